@@ -1,0 +1,129 @@
+"""Routes of the scene: its page, and a relay between browsers and the scene process.
+
+viser checks no Origin and knows no users; the relay asks `check_origin` before it lets anyone through.
+"""
+
+import asyncio
+from collections.abc import Callable
+from typing import Final
+
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import BaseRoute, Route, WebSocketRoute
+from starlette.websockets import WebSocket, WebSocketDisconnect
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed, WebSocketException
+from websockets.typing import Subprotocol
+
+from backend.scene.page import CONTENT_SECURITY_POLICY, scene_page, waiting_page
+from backend.scene.palette import Theme
+
+POLICY_VIOLATION: Final = 1008
+INTERNAL_ERROR: Final = 1011
+TRY_AGAIN_LATER: Final = 1013
+NOT_FOR_THE_WIRE: Final = {1004: 1000, 1005: 1000, 1006: INTERNAL_ERROR, 1015: INTERNAL_ERROR}
+"""Close codes that say how a connection ended but may not be sent, and what is sent instead."""
+
+
+def scene_routes(
+    get_port: Callable[[], int | None],
+    check_origin: Callable[[WebSocket], bool],
+    get_sentence: Callable[[], str] = lambda: "The 3D scene is starting; it appears here in a moment.",
+    time_limit_s: float = 10.0,
+) -> list[BaseRoute]:
+    """The page `/scene/` and the websocket `/scene`.
+
+    Parameters
+    ----------
+    get_port : the scene process's port on 127.0.0.1, or None while there is none.
+    check_origin : whether this websocket request may see the scene.
+    get_sentence : what the page says while there is no scene.
+    time_limit_s : for connecting to the scene, and for a browser to take one message before it is let go.
+    """
+
+    async def page(request: Request) -> Response:
+        theme: Theme = "light" if request.query_params.get("theme") == "light" else "dark"
+        content = scene_page(theme) if get_port() is not None else waiting_page(theme, get_sentence())
+        headers = {"Content-Security-Policy": CONTENT_SECURITY_POLICY, "Cache-Control": "no-cache"}
+        return Response(content, media_type="text/html", headers=headers)
+
+    async def socket(browser: WebSocket) -> None:
+        if not check_origin(browser):
+            await browser.close(POLICY_VIOLATION, "This origin may not see the scene.")
+            return
+        port = get_port()
+        if port is None:
+            await browser.close(TRY_AGAIN_LATER, get_sentence())
+            return
+        await relay(browser, f"ws://127.0.0.1:{port}", time_limit_s)
+
+    return [Route("/scene/", page, methods=["GET"]), WebSocketRoute("/scene", socket)]
+
+
+async def relay(browser: WebSocket, upstream_address: str, time_limit_s: float) -> None:
+    """Pass messages both ways, untouched, until one side closes; then close the other with the same code."""
+    offered = [Subprotocol(name) for name in browser.scope["subprotocols"]]
+    try:
+        # viser packs its messages itself, and a proxy setting of the environment must not see loopback traffic.
+        upstream = await connect(
+            upstream_address,
+            subprotocols=offered or None,
+            compression=None,
+            max_size=None,
+            proxy=None,
+            open_timeout=time_limit_s,
+            close_timeout=time_limit_s,
+        )
+    except (OSError, TimeoutError, WebSocketException):
+        await browser.close(TRY_AGAIN_LATER, "The 3D scene does not answer; try again.")
+        return
+    async with upstream:
+        await browser.accept(subprotocol=upstream.subprotocol)
+        directions = [
+            asyncio.create_task(_from_browser(browser, upstream)),
+            asyncio.create_task(_to_browser(browser, upstream, time_limit_s)),
+        ]
+        try:
+            await asyncio.wait(directions, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            for direction in directions:
+                direction.cancel()
+            outcomes = await asyncio.gather(*directions, return_exceptions=True)
+    for outcome in outcomes:
+        if isinstance(outcome, Exception):
+            raise outcome
+
+
+async def _from_browser(browser: WebSocket, upstream: ClientConnection) -> None:
+    """Browser to scene, until the browser leaves."""
+    while True:
+        event = await browser.receive()
+        if event["type"] == "websocket.disconnect":
+            code = event.get("code") or 1000
+            await upstream.close(NOT_FOR_THE_WIRE.get(code, code), event.get("reason") or "")
+            return
+        message = event.get("bytes")
+        try:
+            await upstream.send(event["text"] if message is None else message)
+        except ConnectionClosed:
+            return  # the other direction closes the browser's side, with the code
+
+
+async def _to_browser(browser: WebSocket, upstream: ClientConnection, time_limit_s: float) -> None:
+    """Scene to browser, until the scene closes or the browser stops reading."""
+    try:
+        async for message in upstream:
+            async with asyncio.timeout(time_limit_s):
+                if isinstance(message, str):
+                    await browser.send_text(message)
+                else:
+                    await browser.send_bytes(message)
+        code = upstream.close_code or 1000
+    except ConnectionClosed as closed:
+        code = closed.rcvd.code if closed.rcvd is not None else INTERNAL_ERROR
+    except TimeoutError:
+        code = TRY_AGAIN_LATER
+    except (WebSocketDisconnect, RuntimeError):
+        return  # the browser has gone; the other direction hears it too
+    async with asyncio.timeout(time_limit_s):
+        await browser.close(NOT_FOR_THE_WIRE.get(code, code), upstream.close_reason or "")

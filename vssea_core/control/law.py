@@ -1,0 +1,134 @@
+"""Error state, both control laws and the one map from snap to torque: Eqs. (6)-(10) and (14)-(16), without the misprints.
+
+Both laws only choose the link's snap nu = theta_l''''; the map turns it into motor torque with every term of a spring whose
+stiffness moves, and with the algebraic loop of Eqs. (9) and (16) solved.
+"""
+
+import math
+from typing import NamedTuple
+
+from vssea_core.compiled import inlined
+
+STATE_FEEDBACK, SLIDING_MODE = 0.0, 1.0
+
+
+class Law(NamedTuple):
+    """Gains and the controller's model as the kernel takes them."""
+
+    controller: float  # STATE_FEEDBACK or SLIDING_MODE
+    k1: float
+    k2: float
+    k3: float
+    k4: float
+    s1: float
+    s2: float
+    s3: float
+    switching_gain: float
+    layer_width: float  # 0 = sgn
+    position_form: float  # 1 = position observer
+    difference_keep: float  # filtered encoder differences: w+ = keep w + gain (theta+ - theta); gain 0 = measured velocities
+    difference_gain: float
+    link_inertia: float
+    link_damping: float
+    motor_inertia: float
+    motor_damping: float
+    spring_constant: float
+    stiffness_inertia: float
+    stiffness_damping: float
+    stiffness_p: float  # w^2 of the stiffness loop
+    stiffness_d: float  # 2 z w
+
+
+class Target(NamedTuple):
+    """A reference and its four derivatives [rad, rad/s, ...]."""
+
+    r: float
+    r1: float
+    r2: float
+    r3: float
+    r4: float
+
+
+class StiffnessTarget(NamedTuple):
+    """Reference of the stiffness motor [rad] and two derivatives; the second is continuous."""
+
+    r: float
+    r1: float
+    r2: float
+
+
+class Terms(NamedTuple):
+    """What one tick computed, term by term."""
+
+    e1: float
+    e2: float
+    e3: float
+    e4: float
+    sigma: float
+    snap: float
+    motor_torque: float
+    stiffness_torque: float
+
+
+@inlined
+def switched(sigma, layer_width):  # type: ignore[no-untyped-def]
+    """Return sgn(sigma), or its saturation over +-layer_width."""
+    if layer_width > 0.0:
+        return min(1.0, max(-1.0, sigma / layer_width))
+    return math.copysign(1.0, sigma) if sigma != 0.0 else 0.0
+
+
+@inlined
+def chosen_snap(law, sigma, e1, e2, e3, e4, r4):  # type: ignore[no-untyped-def]
+    """Return nu [rad/s^4]: Eq. (9) for state feedback, Eq. (16) for sliding mode."""
+    if law.controller == STATE_FEEDBACK:
+        return r4 + law.k1 * e1 + law.k2 * e2 + law.k3 * e3 + law.k4 * e4
+    reaching = law.switching_gain * switched(sigma, law.layer_width)
+    return r4 + law.s1 * e2 + law.s2 * e3 + law.s3 * e4 + reaching
+
+
+@inlined
+def act(law, memory, target, stiffness_target):  # type: ignore[no-untyped-def]
+    """Return the Terms of this tick from the observers' memory and both references."""
+    link, motor, stiffness = memory.link, memory.motor, memory.stiffness
+    theta_ms = stiffness.measured
+    half = 0.5 * (motor.theta - link.theta)
+    stretch = law.spring_constant / (theta_ms * theta_ms * theta_ms)
+    tau_s = stretch * math.sin(half)
+    k = 0.5 * stretch * math.cos(half)
+
+    ms_rate = stiffness.omega / theta_ms
+    ms_acceleration = stiffness_target.r2 / theta_ms
+    deflection_rate = motor.omega - link.omega
+    tau_s_rate = k * deflection_rate - 3.0 * tau_s * ms_rate
+    beta = law.link_damping / law.link_inertia
+    a_l = tau_s / law.link_inertia - beta * link.omega - link.d
+    j_l = tau_s_rate / law.link_inertia - beta * a_l - link.d1
+
+    e1 = target.r - link.theta
+    e2 = target.r1 - link.omega
+    e3 = target.r2 - a_l
+    e4 = target.r3 - j_l
+    sigma = law.s1 * e1 + law.s2 * e2 + law.s3 * e3 + e4
+    snap = chosen_snap(law, sigma, e1, e2, e3, e4, target.r4)
+
+    moving = (
+        -0.25 * tau_s * deflection_rate * deflection_rate
+        - 6.0 * k * deflection_rate * ms_rate
+        + 12.0 * tau_s * ms_rate * ms_rate
+        - 3.0 * tau_s * ms_acceleration
+    )
+    a_e = a_l + (law.link_inertia * (snap + link.d2) + law.link_damping * j_l - moving) / k
+    motor_torque = law.motor_inertia * (a_e + motor.d) + tau_s + law.motor_damping * motor.omega
+
+    asked = (
+        stiffness_target.r2
+        + law.stiffness_p * (stiffness_target.r - stiffness.theta)
+        + law.stiffness_d * (stiffness_target.r1 - stiffness.omega)
+    )
+    stiffness_torque = (
+        law.stiffness_inertia * (asked + stiffness.d)
+        + law.stiffness_damping * stiffness.omega
+        + law.spring_constant * memory.spring.back
+    )
+    return Terms(e1, e2, e3, e4, sigma, snap, motor_torque, stiffness_torque)

@@ -1,0 +1,118 @@
+"""From a tuning to the flat numbers of the tick."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba.np.unsafe.ndarray import to_fixed_tuple
+from numpy.typing import NDArray
+
+from vssea_core.compiled import inlined
+from vssea_core.control import observer_design
+from vssea_core.control.design import state_feedback_gains, surface_gains
+from vssea_core.control.law import SLIDING_MODE, STATE_FEEDBACK, Law
+from vssea_core.control.observer import Channel, Memory, ObserverGains, Spring
+from vssea_core.control.tuning import SlidingMode, StateFeedback, Tuning, VelocityObserver
+
+LAW, GAINS, CHANNEL, SPRING = len(Law._fields), len(ObserverGains._fields), len(Channel._fields), len(Spring._fields)
+MEMORY_SIZE = 3 * CHANNEL + SPRING
+
+
+class Prepared(NamedTuple):
+    """A tuning as the tick takes it."""
+
+    law: Law
+    link: ObserverGains
+    motor: ObserverGains
+    stiffness: ObserverGains
+
+
+def prepare(tuning: Tuning, sample_time_s: float) -> NDArray[np.float64]:
+    """Return `tuning` as one array of numbers: gains and discrete matrices, in the order of Prepared."""
+    model, observer, loop = tuning.model, tuning.observer, tuning.stiffness_loop
+    rates = (
+        model.link_damping / model.link_inertia,
+        model.motor_damping / model.motor_inertia,
+        model.stiffness_damping / model.stiffness_inertia,
+    )
+    bandwidths = (observer.bandwidth, observer.bandwidth, loop.observer_bandwidth)
+    channels = [_observer_gains(tuning, g, rate, sample_time_s) for g, rate in zip(bandwidths, rates, strict=True)]
+    return np.array([*_law(tuning, sample_time_s), *channels[0], *channels[1], *channels[2]])
+
+
+def _law(tuning: Tuning, sample_time_s: float) -> Law:
+    controller, observer, model, loop = tuning.controller, tuning.observer, tuning.model, tuning.stiffness_loop
+    feedback, surface = StateFeedback(), SlidingMode()
+    if isinstance(controller, StateFeedback):
+        feedback, surface = controller, SlidingMode(surface_pole=controller.natural_frequency)
+    else:
+        surface = controller
+    keep, gain = 0.0, 0.0
+    if isinstance(observer, VelocityObserver) and observer.velocity_source == "difference":
+        keep = math.exp(-observer.velocity_filter * sample_time_s)
+        gain = (1.0 - keep) / sample_time_s
+    return Law(
+        SLIDING_MODE if isinstance(controller, SlidingMode) else STATE_FEEDBACK,
+        *state_feedback_gains(feedback.natural_frequency, feedback.damping),
+        *surface_gains(surface.surface_pole),
+        surface.switching_gain,
+        surface.layer_width if surface.switch == "layer" else 0.0,
+        float(observer.kind == "position"),
+        keep,
+        gain,
+        model.link_inertia,
+        model.link_damping,
+        model.motor_inertia,
+        model.motor_damping,
+        model.spring_constant,
+        model.stiffness_inertia,
+        model.stiffness_damping,
+        loop.bandwidth**2,
+        2.0 * loop.damping * loop.bandwidth,
+    )
+
+
+def _observer_gains(tuning: Tuning, bandwidth: float, damping_rate: float, sample_time_s: float) -> ObserverGains:
+    observer = tuning.observer
+    velocity, position = np.zeros(18), np.zeros(17)
+    if isinstance(observer, VelocityObserver):
+        exact = observer.discretisation == "exact"
+        form = observer_design.velocity_exact if exact else observer_design.velocity_first_order_hold
+        velocity = np.concatenate([part.ravel() for part in form(bandwidth, sample_time_s)])
+    else:
+        a, b0, b1, m = observer_design.position_form(bandwidth, damping_rate, sample_time_s)
+        position = np.array([*a[0, 1:], *a[1, 1:], b0[0], b1[0], b0[1], b1[1], *m])
+    return ObserverGains(*velocity, *position, sample_time_s)
+
+
+@inlined
+def loaded_prepared(values):  # type: ignore[no-untyped-def]
+    """Return the Prepared of an array made by `prepare`."""
+    return Prepared(
+        Law(*to_fixed_tuple(values[:LAW], LAW)),
+        ObserverGains(*to_fixed_tuple(values[LAW : LAW + GAINS], GAINS)),
+        ObserverGains(*to_fixed_tuple(values[LAW + GAINS : LAW + 2 * GAINS], GAINS)),
+        ObserverGains(*to_fixed_tuple(values[LAW + 2 * GAINS : LAW + 3 * GAINS], GAINS)),
+    )
+
+
+@inlined
+def loaded_memory(values):  # type: ignore[no-untyped-def]
+    """Return the Memory kept in an array of MEMORY_SIZE numbers; all zeros is a controller that has not started."""
+    return Memory(
+        Channel(*to_fixed_tuple(values[:CHANNEL], CHANNEL)),
+        Channel(*to_fixed_tuple(values[CHANNEL : 2 * CHANNEL], CHANNEL)),
+        Channel(*to_fixed_tuple(values[2 * CHANNEL : 3 * CHANNEL], CHANNEL)),
+        Spring(*to_fixed_tuple(values[3 * CHANNEL : 3 * CHANNEL + SPRING], SPRING)),
+    )
+
+
+@inlined
+def keep_memory(values, memory):  # type: ignore[no-untyped-def]
+    """Write `memory` into an array of MEMORY_SIZE numbers."""
+    for i in range(CHANNEL):
+        values[i] = memory.link[i]
+        values[CHANNEL + i] = memory.motor[i]
+        values[2 * CHANNEL + i] = memory.stiffness[i]
+    for i in range(SPRING):
+        values[3 * CHANNEL + i] = memory.spring[i]

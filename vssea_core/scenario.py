@@ -1,0 +1,62 @@
+"""The one document: plant, sensors, timing, tuning, references, disturbances, initial state and duration.
+
+It is what REST takes, what the command line reads, and what the live session runs. Imports no numba and no scipy.
+"""
+
+from typing import Self
+
+from pydantic import Field, model_validator
+
+from vssea_core.actuator.parameters import Actuator, Sensors, Timing
+from vssea_core.control.tuning import Tuning, VelocityObserver
+from vssea_core.fields import Part, parameter
+from vssea_core.signals.documents import ConstantStiffness, Disturbances, Reference, SineReference, StiffnessReference
+
+
+class Initial(Part):
+    """The actuator starts at rest, in equilibrium under the disturbances that act at t = 0."""
+
+    link_position: float = parameter(0.0, "link position", unit="rad", symbol="θ_l(0)", low=-6.3, high=6.3, step=0.01)
+
+
+class Scenario(Part):
+    """One experiment, whole."""
+
+    name: str = Field("untitled", min_length=1, max_length=80)
+    description: str = Field("", max_length=2000)
+    actuator: Actuator = Actuator()
+    sensors: Sensors = Sensors()
+    timing: Timing = Timing()
+    tuning: Tuning = Tuning()
+    reference: Reference = SineReference()
+    stiffness_reference: StiffnessReference = ConstantStiffness()
+    disturbances: Disturbances = Disturbances()
+    initial: Initial = Initial()
+    duration_s: float = parameter(10.0, "duration", unit="s", low=0.001, high=120.0, step=0.1)
+
+    @model_validator(mode="after")
+    def _parts_fit(self) -> Self:
+        check_observer_fits(self.tuning, self.sensors)
+        check_stiffness_fits(self.stiffness_reference, self.actuator)
+        return self
+
+
+def check_observer_fits(tuning: Tuning, sensors: Sensors) -> None:
+    """Raise ValueError if the observer needs a velocity signal that the sensors do not give."""
+    observer = tuning.observer
+    if isinstance(observer, VelocityObserver) and observer.velocity_source == "measured" and not sensors.velocities:
+        raise ValueError(
+            "tuning.observer.velocity_source is 'measured', but these sensors measure no velocities; "
+            "choose the position observer, or velocity_source 'difference'"
+        )
+
+
+def check_stiffness_fits(reference: StiffnessReference, actuator: Actuator) -> None:
+    """Raise ValueError if a commanded stiffness lies outside the end stops."""
+    low, high = actuator.stiffness.softest, actuator.stiffness.stiffest
+    asked = [("stiffness", reference.stiffness)]
+    if reference.kind == "move":
+        asked.append(("target", reference.target))
+    for name, value in asked:
+        if not low <= value <= high:
+            raise ValueError(f"stiffness_reference.{name} is {value:g} N·m/rad; expected {low:g} to {high:g} N·m/rad, the end stops")

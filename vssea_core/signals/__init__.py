@@ -1,0 +1,1 @@
+"""References and disturbances as functions of time."""

@@ -1,0 +1,105 @@
+"""Reference of the stiffness motor: commanded stiffness, slewed at its permitted rate, through a third-order filter.
+
+The filter works on theta_ms, so theta_ms'' is continuous; the torque map needs it.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vssea_core.actuator.parameters import StiffnessMechanism
+from vssea_core.actuator.spring import stiffness_motor_position
+from vssea_core.compiled import inlined
+from vssea_core.control.law import StiffnessTarget
+from vssea_core.control.tuning import Tuning
+from vssea_core.signals.documents import StiffnessReference
+from vssea_core.signals.references import moved
+
+CONSTANT, MOVE = 0.0, 1.0
+MAX_STIFFNESS_RATE = 3000.0  # N m/rad/s
+SPEED_SHARE = 0.95  # share of the stiffness motor's speed that the slew may ask for, so that the loop keeps some
+FILTER_PEAK = 2.0 * math.exp(-2.0)  # largest theta'' of the filter a unit of ramp rate and bandwidth
+
+
+class Slew(NamedTuple):
+    """What bounds the stiffness reference; angles of the stiffness motor [rad]."""
+
+    kind: float
+    theta_from: float
+    theta_to: float
+    start_s: float
+    duration_s: float
+    set_at_s: float
+    bandwidth: float  # of the filter
+    speed: float  # largest slew of theta_ms [rad/s]
+    torque_reserve: float
+    motor_inertia: float
+    spring_constant: float
+
+
+SLEW_SIZE = len(Slew._fields)
+SLEWED_SIZE = 4  # slewed command, filter output, its rate and acceleration
+
+
+def slew_row(
+    reference: StiffnessReference, tuning: Tuning, mechanism: StiffnessMechanism, set_at_s: float = 0.0
+) -> NDArray[np.float64]:
+    """Return the numbers of a Slew for the kernel."""
+    constant = tuning.model.spring_constant
+    start = stiffness_motor_position(reference.stiffness, constant)
+    timing = (CONSTANT, start, start, 0.0, 1.0)
+    if reference.kind == "move":
+        timing = (MOVE, start, stiffness_motor_position(reference.target, constant), reference.start_s, reference.duration_s)
+    return np.array(
+        Slew(
+            *timing,
+            set_at_s,
+            tuning.stiffness_loop.reference_bandwidth,
+            SPEED_SHARE * mechanism.speed_limit,
+            tuning.stiffness_loop.torque_reserve,
+            tuning.model.motor_inertia,
+            constant,
+        )
+    )
+
+
+@inlined
+def commanded(slew, now):  # type: ignore[no-untyped-def]
+    """Return the commanded stiffness motor position [rad] at scenario time `now` [s]."""
+    if slew.kind == CONSTANT:
+        return slew.theta_to
+    return moved(slew.theta_from, slew.theta_to, now - slew.set_at_s - slew.start_s, slew.duration_s).r
+
+
+@inlined
+def advance_stiffness(slew, slewed, now, tau_s, sample_time_s):  # type: ignore[no-untyped-def]
+    """Return the StiffnessTarget at `now` [s] and whether its slew was limited; advance `slewed` (4) by one sample.
+
+    The slew obeys |dk/dt| <= 3000 N m/rad/s, the motor's speed, and, under a spring torque `tau_s` [N m], the motor torque
+    3 J_e tau_s theta_ms'' / (k theta_ms) that a change costs.
+    """
+    target = StiffnessTarget(slewed[1], slewed[2], slewed[3])
+    w, t = slew.bandwidth, sample_time_s
+    theta = slewed[0]
+    k = slew.spring_constant / (2.0 * theta * theta * theta)
+    fastest = min(slew.speed, MAX_STIFFNESS_RATE * theta / (3.0 * k))
+    if tau_s != 0.0:
+        bearable = slew.torque_reserve * k * theta / (3.0 * slew.motor_inertia * abs(tau_s))
+        fastest = min(fastest, bearable / (FILTER_PEAK * w))
+    gap = commanded(slew, now) - theta
+    limited = abs(gap) > fastest * t * (1.0 + 1e-9)
+    if limited:
+        gap = math.copysign(fastest * t, gap)
+    slewed[0] = theta + gap
+
+    shrink = math.exp(-w * t)
+    y0 = slewed[1] - slewed[0]
+    y1 = slewed[2] + w * y0
+    y2 = slewed[3] + w * (2.0 * slewed[2] + w * y0)
+    y0, y1, y2 = shrink * (y0 + t * (y1 + 0.5 * t * y2)), shrink * (y1 + t * y2), shrink * y2
+    slewed[1] = slewed[0] + y0
+    slewed[2] = y1 - w * y0
+    slewed[3] = y2 - w * (2.0 * slewed[2] + w * y0)
+    return target, limited

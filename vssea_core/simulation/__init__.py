@@ -1,0 +1,1 @@
+"""The closed loop over time: scenario in, trajectory and metrics out."""

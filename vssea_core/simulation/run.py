@@ -1,0 +1,52 @@
+"""A scenario simulated, whole: `simulate(scenario) -> Trajectory`."""
+
+import numpy as np
+
+from vssea_core.channels import CHANNELS
+from vssea_core.control.prepared import prepare
+from vssea_core.scenario import Scenario
+from vssea_core.signals.references import reference_row
+from vssea_core.signals.stiffness import slew_row
+from vssea_core.simulation.kernel import NOT_FINITE, RAN_AWAY, RUNNING, SPRING_LEFT, run
+from vssea_core.simulation.state import equilibrium_state, inputs_of
+from vssea_core.simulation.trajectory import Trajectory
+
+ENDINGS = {
+    NOT_FINITE: "a state became infinite or not a number",
+    SPRING_LEFT: "the deflection left ±π rad, where the spring's law ends",
+    RAN_AWAY: "the link is more than 1000 rad away",
+}
+
+
+def simulate(scenario: Scenario, every: int = 1) -> Trajectory:
+    """Return the trajectory of `scenario`, recording every `every`-th sample.
+
+    A diverging run is not an error: it ends early and the trajectory's `ending` says why. Raises ValueError if the
+    scenario cannot start (see equilibrium_state) or `every` is not a positive whole number.
+    """
+    if every < 1:
+        raise ValueError(f"every is {every}; expected 1 (all samples) or more")
+    period = scenario.timing.sample_time_s
+    count = max(1, round(scenario.duration_s / period))
+    inputs = inputs_of(scenario)
+    prepared = prepare(scenario.tuning, period)
+    rows = np.empty((-(-count // every), len(CHANNELS)))
+    done, end = run(
+        inputs.rig,
+        prepared,
+        prepared,
+        reference_row(scenario.reference),
+        slew_row(scenario.stiffness_reference, scenario.tuning, scenario.actuator.stiffness),
+        inputs.link_terms,
+        inputs.motor_terms,
+        True,
+        1.0,
+        equilibrium_state(scenario),
+        0,
+        count,
+        every,
+        rows,
+    )
+    kept = rows if end == RUNNING else rows[: done // every + 1]
+    ending = None if end == RUNNING else f"stopped at t = {done * period:.3f} s: {ENDINGS[end]}"
+    return Trajectory(kept, period * every, ending)

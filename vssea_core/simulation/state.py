@@ -1,0 +1,157 @@
+"""The arrays a run works on: parameters from the document, and the one state that a live session and a simulation share."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import math
+
+import numpy as np
+from numba.np.unsafe.ndarray import to_fixed_tuple
+from numpy.typing import NDArray
+
+from vssea_core.actuator.drive import Drives, Heat
+from vssea_core.actuator.dynamics import Plant, PlantState
+from vssea_core.actuator.parameters import Actuator
+from vssea_core.actuator.sensors import Encoders, encoders
+from vssea_core.actuator.spring import equilibrium_deflection, stiffness_motor_position
+from vssea_core.compiled import inlined
+from vssea_core.control.prepared import MEMORY_SIZE
+from vssea_core.scenario import Scenario
+from vssea_core.signals.disturbances import disturbance_rows, load_at
+from vssea_core.signals.references import TRANSITION_SIZE
+from vssea_core.signals.stiffness import SLEWED_SIZE
+
+Numbers = NDArray[np.float64]
+
+PLANT, HEAT = len(PlantState._fields), len(Heat._fields)
+APPLIED = PLANT + HEAT  # torques applied over the last period: motor, stiffness motor
+PENDING = APPLIED + 2  # torques waiting for a compute delay of one sample
+MEMORY = PENDING + 2
+TRANSITION = MEMORY + MEMORY_SIZE
+SLEWED = TRANSITION + TRANSITION_SIZE
+STATE_SIZE = SLEWED + SLEWED_SIZE
+
+
+class Rig(NamedTuple):
+    """The simulated rig as the kernel takes it: true plant, drives, encoders and timing."""
+
+    plant: Plant
+    drives: Drives
+    encoders: Encoders
+    sample_time_s: float
+    compute_delay: float
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """Everything a run of the kernel reads, from one scenario."""
+
+    rig: Numbers
+    link_terms: Numbers
+    motor_terms: Numbers
+
+
+def plant_numbers(actuator: Actuator, sample_time_s: float) -> Plant:
+    """Return the true plant's parameters, with its end stops and the steps that its dry friction needs."""
+    link, motor, mechanism = actuator.link, actuator.motor, actuator.stiffness
+    sharpness = motor.coulomb_friction * sample_time_s / (motor.inertia * motor.friction_velocity)
+    return Plant(
+        link.inertia,
+        link.damping,
+        motor.inertia,
+        motor.damping,
+        motor.coulomb_friction,
+        motor.friction_velocity,
+        motor.torque_lag_s,
+        mechanism.spring_constant,
+        mechanism.inertia,
+        mechanism.damping,
+        stiffness_motor_position(mechanism.stiffest, mechanism.spring_constant),
+        stiffness_motor_position(mechanism.softest, mechanism.spring_constant),
+        float(mechanism.back_torque == "paper"),
+        float(max(1, math.ceil(sharpness / FRICTION_RATE_A_STEP))),
+    )
+
+
+FRICTION_RATE_A_STEP = 0.12
+"""Largest friction rate times step: keeps the order-5 step within 1e-11 rad through a reversal."""
+
+
+def drive_numbers(actuator: Actuator, sample_time_s: float) -> Drives:
+    """Return the limits of both drives."""
+    motor, mechanism = actuator.motor, actuator.stiffness
+    return Drives(
+        motor.peak_torque,
+        motor.continuous_torque,
+        motor.no_load_speed,
+        motor.stall_torque,
+        mechanism.peak_torque,
+        mechanism.continuous_torque,
+        mechanism.speed_limit,
+        math.exp(-sample_time_s / motor.thermal_time_s),
+        mechanism.leaf_torque,
+    )
+
+
+def rig_row(scenario: Scenario) -> Numbers:
+    """Return the simulated rig of `scenario` as one array, in the order of Rig."""
+    period = scenario.timing.sample_time_s
+    return np.array(
+        [
+            *plant_numbers(scenario.actuator, period),
+            *drive_numbers(scenario.actuator, period),
+            *encoders(scenario.sensors, scenario.actuator.motor),
+            period,
+            float(scenario.timing.compute_delay_samples),
+        ]
+    )
+
+
+PLANT_SIZE, DRIVES_SIZE, ENCODERS_SIZE = len(Plant._fields), len(Drives._fields), len(Encoders._fields)
+_DRIVES_AT = PLANT_SIZE
+_ENCODERS_AT = PLANT_SIZE + DRIVES_SIZE
+_TIMING_AT = _ENCODERS_AT + ENCODERS_SIZE
+
+
+@inlined
+def loaded_rig(row):  # type: ignore[no-untyped-def]
+    """Return the Rig of an array made by `rig_row`."""
+    return Rig(
+        Plant(*to_fixed_tuple(row[:_DRIVES_AT], PLANT_SIZE)),
+        Drives(*to_fixed_tuple(row[_DRIVES_AT:_ENCODERS_AT], DRIVES_SIZE)),
+        Encoders(*to_fixed_tuple(row[_ENCODERS_AT:_TIMING_AT], ENCODERS_SIZE)),
+        row[_TIMING_AT],
+        row[_TIMING_AT + 1],
+    )
+
+
+def equilibrium_state(scenario: Scenario) -> Numbers:
+    """Return the state at rest in equilibrium under the disturbances that act at t = 0, with an unstarted controller.
+
+    Raises ValueError if the spring cannot carry the link's load at this stiffness.
+    """
+    mechanism, model = scenario.actuator.stiffness, scenario.tuning.model
+    theta_ms = stiffness_motor_position(scenario.stiffness_reference.stiffness, model.spring_constant)
+    stiff = stiffness_motor_position(mechanism.stiffest, mechanism.spring_constant)
+    soft = stiffness_motor_position(mechanism.softest, mechanism.spring_constant)
+    at = min(max(theta_ms, stiff), soft)
+    link_load = load_at(disturbance_rows(scenario.disturbances.link), 0.0)
+    motor_load = load_at(disturbance_rows(scenario.disturbances.motor), 0.0)
+    deflection = equilibrium_deflection(link_load, mechanism.spring_constant, at)
+    back = -12.0 * mechanism.spring_constant * math.sin(deflection / 4.0) ** 2 / at**4
+    if mechanism.back_torque == "paper":
+        back = link_load
+    motor_torque = link_load + motor_load
+    state = np.zeros(STATE_SIZE)
+    theta_l = scenario.initial.link_position
+    state[:PLANT] = PlantState(theta_l, 0.0, theta_l + deflection, 0.0, at, 0.0, motor_torque)
+    state[APPLIED : APPLIED + 2] = state[PENDING : PENDING + 2] = motor_torque, back
+    state[SLEWED : SLEWED + SLEWED_SIZE] = at, at, 0.0, 0.0
+    return state
+
+
+def inputs_of(scenario: Scenario) -> Inputs:
+    """Return the rig and the disturbance terms of `scenario` as arrays."""
+    return Inputs(
+        rig_row(scenario), disturbance_rows(scenario.disturbances.link), disturbance_rows(scenario.disturbances.motor)
+    )
