@@ -7,14 +7,25 @@ import numpy as np
 import viser
 
 from backend.scene import geometry
-from backend.scene.bodies import arrow_faces, leaf_faces, link_bar, link_hub, motor_body, motor_plate, motor_ring
-from backend.scene.bodies import floor_shadow, ghost_bar, rollers
+from backend.scene.bodies import (
+    arrow_faces,
+    floor_shadow,
+    ghost_bar,
+    leaf_faces,
+    link_bar,
+    link_hub,
+    motor_body,
+    motor_bolts,
+    motor_plate,
+    motor_ring,
+    rollers,
+)
 from backend.scene.palette import DARK, rgb
 from backend.scene.solids import Mesh
 
-CAMERA_POSITION = (1.75, 1.15, 4.5)
-CAMERA_TARGET = (0.13, -0.03, 0.0)
-CAMERA_HEIGHT_ANGLE = math.radians(28.5)
+CAMERA_POSITION = (1.62, 1.05, 4.62)
+CAMERA_TARGET = (0.26, -0.02, 0.0)
+CAMERA_HEIGHT_ANGLE = math.radians(27.5)
 SMALLEST_CHANGE = 1e-3
 """Smaller changes of a drawn angle [rad] or length are not seen, and are not sent."""
 
@@ -85,9 +96,9 @@ class ActuatorScene:
         scene.configure_default_lights(False)
         scene.configure_environment_map(None)
         # Mostly even light, as the colours carry meaning; the rest gives form.
-        scene.add_light_ambient("/light/even", intensity=2.6)
-        scene.add_light_directional("/light/key", intensity=1.5, position=(-1.5, 3.0, 4.0))
-        scene.add_light_directional("/light/side", intensity=0.5, position=(4.0, 0.5, 2.0))
+        scene.add_light_ambient("/light/even", intensity=2.0)
+        scene.add_light_directional("/light/key", intensity=1.1, position=(-1.5, 3.0, 4.0))
+        scene.add_light_directional("/light/side", intensity=0.35, position=(4.0, 0.5, 2.0))
         camera.position = CAMERA_POSITION
         camera.look_at = CAMERA_TARGET
         camera.up = (0.0, 1.0, 0.0)
@@ -103,6 +114,7 @@ class ActuatorScene:
         self._add("/body", motor_body(), "body")
         self._add("/motor/plate", motor_plate(), "plate")
         self._add("/motor/ring", motor_ring(), "ring")
+        self._add("/motor/bolts", motor_bolts(), "bolt")
         start = geometry.roller_radius(geometry.free_length(0.0))
         self._rollers = self._add("/motor/rollers", rollers(start), "roller")
         self._add("/ghost/bar", ghost_bar(), "reference", opacity=0.42)

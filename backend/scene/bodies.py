@@ -11,14 +11,14 @@ RING_OUTER = 0.62
 RING_INNER = 0.5
 LINK_REACH = 1.15
 BALL_RADIUS = 0.095
-ROLLER_RADIUS = 0.034
+ROLLER_RADIUS = 0.027
 FLOOR = -0.86
 BOLTS = 8
 
 
 def motor_ring() -> Mesh:
-    """The gear's output ring with its bolts, which make its turning visible; carries the rollers."""
-    ring = lathe(
+    """The gear's output ring, which carries the rollers."""
+    return lathe(
         [
             (RING_INNER, -0.12),
             (RING_OUTER, -0.12),
@@ -30,10 +30,14 @@ def motor_ring() -> Mesh:
         ],
         segments=96,
     )
-    bolt = lathe([(0.022, 0.09), (0.022, 0.112), (0.0, 0.112)], segments=12)
+
+
+def motor_bolts() -> Mesh:
+    """The ring's bolts: they make its turning visible."""
+    bolt = lathe([(0.026, 0.09), (0.026, 0.108), (0.0, 0.108)], segments=14)
     radius = 0.5 * (RING_OUTER + RING_INNER)
     angles = [2.0 * math.pi * (number + 0.5) / BOLTS for number in range(BOLTS)]
-    return join(ring, *(moved(bolt, radius * math.cos(angle), radius * math.sin(angle)) for angle in angles))
+    return join(*(moved(bolt, radius * math.cos(angle), radius * math.sin(angle)) for angle in angles))
 
 
 def motor_plate() -> Mesh:

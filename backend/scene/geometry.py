@@ -22,7 +22,7 @@ LEAF_REACH: Final = 0.335
 """Drawn length of a whole leaf, from clamp to free end."""
 LEAF_ANGLES: Final = tuple(math.pi * (0.25 + 0.5 * number) for number in range(4))
 """Directions of the leaves in the link's frame [rad]: between the link's bar, so that it hides none."""
-LEAF_THICKNESS: Final = 0.034
+LEAF_THICKNESS: Final = 0.038
 LEAF_STATIONS: Final = 13
 """Stations along a leaf: all but two over the bent part, the rest over the straight, unloaded end."""
 

@@ -1,6 +1,6 @@
 "use strict";
-// Read before viser's client. It leans on three of the client's inner parts, so the tests pin viser's version:
-// the messages its worker posts, `window.__viserMutable` and its habit of retrying only while it has the focus.
+// Read before viser's client. It leans on inner parts of that client (the messages its worker posts,
+// `window.__viserMutable`, retrying only with the focus), so a new version of viser wants a look at the page.
 (() => {
   const { exchange, note } = window.vsseaScene;
 
@@ -24,6 +24,18 @@
       return super.onmessage;
     }
   };
+
+  // The renderer's filmic tone curve would fade the colours, which are those of the plots: switch it off for good.
+  // three.js announces each renderer to developer tools, if there are any.
+  window.__THREE_DEVTOOLS__ ??= new EventTarget();
+  window.__THREE_DEVTOOLS__.addEventListener("observe", ({ detail }) => {
+    if (detail && "toneMapping" in detail) Object.defineProperty(detail, "toneMapping", { get: () => 0, set() {} });
+  });
+
+  // viser's point-cloud sorter wants eval, which the page's policy refuses; this scene has nothing to sort.
+  window.addEventListener("unhandledrejection", (event) => {
+    if (event.reason instanceof EvalError) event.preventDefault();
+  });
 
   // Keys belong to the dashboard: Esc must stop the actuator from here too, and viser's own keys would move the camera.
   const hand = (event) => {

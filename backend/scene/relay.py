@@ -5,6 +5,7 @@ viser checks no Origin and knows no users; the relay asks `check_origin` before 
 
 import asyncio
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Final
 
 from starlette.requests import Request
@@ -23,6 +24,9 @@ INTERNAL_ERROR: Final = 1011
 TRY_AGAIN_LATER: Final = 1013
 NOT_FOR_THE_WIRE: Final = {1004: 1000, 1005: 1000, 1006: INTERNAL_ERROR, 1015: INTERNAL_ERROR}
 """Close codes that say how a connection ended but may not be sent, and what is sent instead."""
+
+Closing = tuple[int, str]
+"""Close code and reason."""
 
 
 def scene_routes(
@@ -79,38 +83,35 @@ async def relay(browser: WebSocket, upstream_address: str, time_limit_s: float) 
         return
     async with upstream:
         await browser.accept(subprotocol=upstream.subprotocol)
-        directions = [
-            asyncio.create_task(_from_browser(browser, upstream)),
-            asyncio.create_task(_to_browser(browser, upstream, time_limit_s)),
-        ]
+        from_browser = asyncio.create_task(_from_browser(browser, upstream))
+        to_browser = asyncio.create_task(_to_browser(browser, upstream, time_limit_s))
         try:
-            await asyncio.wait(directions, return_when=asyncio.FIRST_COMPLETED)
+            await asyncio.wait([from_browser, to_browser], return_when=asyncio.FIRST_COMPLETED)
         finally:
-            for direction in directions:
-                direction.cancel()
-            outcomes = await asyncio.gather(*directions, return_exceptions=True)
-    for outcome in outcomes:
-        if isinstance(outcome, Exception):
-            raise outcome
+            from_browser.cancel()
+            to_browser.cancel()
+            await asyncio.wait([from_browser, to_browser])
+        if not from_browser.cancelled():
+            await upstream.close(*from_browser.result())
+        elif not to_browser.cancelled():
+            with suppress(TimeoutError, WebSocketDisconnect, RuntimeError):  # it may have gone in the meantime
+                async with asyncio.timeout(time_limit_s):
+                    await browser.close(*to_browser.result())
 
 
-async def _from_browser(browser: WebSocket, upstream: ClientConnection) -> None:
-    """Browser to scene, until the browser leaves."""
+async def _from_browser(browser: WebSocket, upstream: ClientConnection) -> Closing:
+    """Browser to scene, until the browser leaves; answers how."""
     while True:
         event = await browser.receive()
         if event["type"] == "websocket.disconnect":
-            code = event.get("code") or 1000
-            await upstream.close(NOT_FOR_THE_WIRE.get(code, code), event.get("reason") or "")
-            return
+            return _closing(event.get("code"), event.get("reason"))
         message = event.get("bytes")
-        try:
+        with suppress(ConnectionClosed):  # the other direction reports the end, with its code
             await upstream.send(event["text"] if message is None else message)
-        except ConnectionClosed:
-            return  # the other direction closes the browser's side, with the code
 
 
-async def _to_browser(browser: WebSocket, upstream: ClientConnection, time_limit_s: float) -> None:
-    """Scene to browser, until the scene closes or the browser stops reading."""
+async def _to_browser(browser: WebSocket, upstream: ClientConnection, time_limit_s: float) -> Closing:
+    """Scene to browser, until the scene closes or the browser no longer reads; answers how."""
     try:
         async for message in upstream:
             async with asyncio.timeout(time_limit_s):
@@ -118,12 +119,15 @@ async def _to_browser(browser: WebSocket, upstream: ClientConnection, time_limit
                     await browser.send_text(message)
                 else:
                     await browser.send_bytes(message)
-        code = upstream.close_code or 1000
-    except ConnectionClosed as closed:
-        code = closed.rcvd.code if closed.rcvd is not None else INTERNAL_ERROR
+    except ConnectionClosed:
+        pass  # closed with an error code, which is passed on below
     except TimeoutError:
-        code = TRY_AGAIN_LATER
+        return TRY_AGAIN_LATER, "This page was too slow for the scene."
     except (WebSocketDisconnect, RuntimeError):
-        return  # the browser has gone; the other direction hears it too
-    async with asyncio.timeout(time_limit_s):
-        await browser.close(NOT_FOR_THE_WIRE.get(code, code), upstream.close_reason or "")
+        return 1000, ""  # the browser has gone
+    return _closing(upstream.close_code, upstream.close_reason)
+
+
+def _closing(code: int | None, reason: str | None) -> Closing:
+    """Code and reason as they may be sent on."""
+    return NOT_FOR_THE_WIRE.get(code or 1005, code or 1000), reason or ""

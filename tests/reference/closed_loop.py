@@ -62,9 +62,9 @@ def simulate(config: Config) -> dict[str, np.ndarray]:
     rows: dict[str, list] = {}
     for k in range(round(config.duration_s / dt)):
         t = k * dt
-        known = estimator.update(sensors.read(state), feed, feed_ms)
-        assert estimator.previous is not None
-        deflection = estimator.previous.angles[1] - estimator.previous.angles[0]
+        measured = sensors.read(state)
+        known = estimator.update(measured, feed, feed_ms)
+        deflection = measured.angles[1] - measured.angles[0]
         reference, wanted = link_reference(config.reference, t), stiffness_reference.state
         decided = link_torque(controller, model, reference, known, wanted[2])
         torque = limited(config.limits, decided["torque"], known.omega_e)

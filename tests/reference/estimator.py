@@ -26,13 +26,8 @@ def _forces(model: Plant, measured: Measurement, torque: float, torque_ms: float
     delta = measured.angles[1] - measured.angles[0]
     spring = spring_torque(model, delta, measured.angles[2])
     back = back_torque(model, delta, measured.angles[2])
-    return np.array(
-        [
-            spring / model.link_inertia,
-            (torque - spring) / model.motor_inertia,
-            (torque_ms - back) / model.stiffness_inertia,
-        ]
-    )
+    torques = np.array([spring, torque - spring, torque_ms - back])
+    return torques / np.array([model.link_inertia, model.motor_inertia, model.stiffness_inertia])
 
 
 class Estimator:

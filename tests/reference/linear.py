@@ -1,4 +1,4 @@
-"""Sampled closed loop about rest as one matrix (section 6): linear spring, constant stiffness, nominal observer and law."""
+"""Sampled closed loop about rest as one matrix: linear spring, constant stiffness, nominal observer and law."""
 
 from __future__ import annotations
 
@@ -78,8 +78,8 @@ def closed_loop_matrix(
 ) -> np.ndarray:
     """Matrix of xi[k+1] = M xi[k], xi = [x, (tau_motor), observer link, observer motor, (delayed u)].
 
-    Observer blocks have 3 states (velocity form) or 5 (position form); `plant` is true, `model` what the controller assumes;
-    stiffnesses in N m/rad, `delay` 0 or 1 samples.
+    Observer blocks have 3 states (velocity form) or 5 (position form); `plant` is true, `model` what the controller
+    assumes; stiffnesses in N m/rad, `delay` 0 or 1 samples.
     """
     phi, gamma = sampled_plant(plant, stiffness, sample_time)
     n, m = len(gamma), 5 if controller.form == "position" else 3

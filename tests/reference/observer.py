@@ -1,4 +1,4 @@
-"""Second-order disturbance observers: Eqs. (20)-(22) in matrix form, the exactly sampled form, and the position form."""
+"""Second-order disturbance observers: Eqs. (20)-(22) in matrix form, exactly sampled, and on measured positions."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def first_order_hold(a: np.ndarray, b: np.ndarray, sample_time: float) -> tuple[
 class AuxiliaryObserver:
     """Eqs. (20)-(22) for n states x with x' = A x + forces - D, first-order hold of x and forces.
 
-    With n = 4 and a_i = D^(i) + g_i x this is the 12-state form of the paper; the spring torque is part of `forces`, so A
-    holds only kinematics and damping. The gains g_0, g_1, g_2 = 3 g, 3 g^2, g^3 put a triple pole at g.
+    With n = 4 and a_i = D^(i) + g_i x this is the 12-state form of the paper; the spring torque is part of `forces`, so
+    A holds only kinematics and damping. The gains g_0, g_1, g_2 = 3 g, 3 g^2, g^3 put a triple pole at g.
     """
 
     def __init__(self, a: np.ndarray, bandwidth: float, sample_time: float) -> None:
@@ -83,7 +83,7 @@ class SampledObserver:
 
 
 class PositionObserver:
-    """Five states [theta, w, d, d', d''] of one channel: w' = -(b/J) w + phi - d, corrected by the measured position."""
+    """[theta, w, d, d', d''] of one channel: w' = -(b/J) w + phi - d, corrected by the measured position."""
 
     def __init__(self, damping_rate: float, bandwidth: float, sample_time: float) -> None:
         a = np.diag([1.0, -1.0, 1.0, 1.0], 1)

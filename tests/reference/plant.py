@@ -92,7 +92,7 @@ def advance(
     integrator: str = "dop853",
     substeps: int = 4,
 ) -> np.ndarray:
-    """State (7,) after one period [s] with both torques [N m] held; `rk` is a fast fourth-order scheme for exploring."""
+    """State (7,) after one period [s] with both torques [N m] held; `rk` is a fast fourth-order scheme."""
 
     def slope(t: float, x: np.ndarray) -> np.ndarray:
         return np.array(derivative(plant, t, x.tolist(), command, command_ms, disturbances))

@@ -39,7 +39,7 @@ def link_reference(reference: Reference, t: float) -> np.ndarray:
 
 
 class StiffnessReferenceFilter:
-    """theta_ms reference [r, r', r''] [rad, rad/s, rad/s^2]: the target through 1 / (s / w_f + 1)^3, held over a period."""
+    """theta_ms reference [r, r', r''] [rad, rad/s, rad/s^2]: the target, held a period, through 1 / (s / w_f + 1)^3."""
 
     def __init__(self, command: StiffnessReference, model: Plant, sample_time: float) -> None:
         self.command = command

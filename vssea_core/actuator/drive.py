@@ -22,7 +22,7 @@ class Drives(NamedTuple):
     stiffness_continuous_torque: float
     stiffness_speed: float
     thermal_decay: float  # exp(-T / thermal time)
-    leaf_torque: float  # at 1000 N m/rad
+    leaf_cube: float  # cube of the leaf's torque a N m/rad: it bears leaf_torque (k/1000)^(1/3)
 
 
 class Heat(NamedTuple):

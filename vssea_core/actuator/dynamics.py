@@ -8,24 +8,23 @@ theta_e = theta~ + q, with q'' = (tau - u) / J_e in closed form, and theta~ is i
 import math
 from typing import NamedTuple
 
-from vssea_core.actuator.spring import back_torque, spring_torque
+from vssea_core.actuator.spring import leaf
 from vssea_core.actuator.stages import shifted_1, shifted_2, shifted_3, shifted_4, shifted_5
 from vssea_core.compiled import inlined
-from vssea_core.signals.disturbances import load
+from vssea_core.signals.disturbances import INSTANTS, loads_of_period, loads_of_step
 
 
 class Plant(NamedTuple):
     """The true parameters as the kernel takes them (SI, gear side; see actuator.parameters)."""
 
-    link_inertia: float
+    per_link_inertia: float  # 1/J: a product costs less than a quotient
     link_damping: float
-    motor_inertia: float
+    per_motor_inertia: float
     motor_damping: float
     coulomb_friction: float
     friction_velocity: float
-    torque_lag_s: float
     spring_constant: float
-    stiffness_inertia: float
+    per_stiffness_inertia: float
     stiffness_damping: float
     theta_ms_stiff: float  # end stops [rad]; the stiff one is the smaller
     theta_ms_soft: float
@@ -63,87 +62,91 @@ def motion(plant, y, q, q_rate, tau_e, tau_ms, load_l, load_e):  # type: ignore[
     theta_l, theta_e, theta_ms, omega_l, omega_e, omega_ms = y
     deflection = theta_e + q - theta_l
     true_omega_e = omega_e + q_rate
-    tau_s = spring_torque(plant.spring_constant, deflection, theta_ms)
-    if plant.paper_back_torque == 0.0:
-        tau_back = back_torque(plant.spring_constant, deflection, theta_ms)
-    else:
-        tau_back = tau_s
+    spring = leaf(deflection, theta_ms)
+    tau_s = plant.spring_constant * spring.torque
+    tau_back = tau_s if plant.paper_back_torque != 0.0 else plant.spring_constant * spring.back
     friction = plant.motor_damping * true_omega_e + dry_friction(plant, true_omega_e)
-    a_l = (tau_s - plant.link_damping * omega_l - load_l) / plant.link_inertia
-    a_e = (tau_e - tau_s - friction - load_e) / plant.motor_inertia
-    a_ms = (tau_ms - plant.stiffness_damping * omega_ms - tau_back) / plant.stiffness_inertia
+    a_l = (tau_s - plant.link_damping * omega_l - load_l) * plant.per_link_inertia
+    a_e = (tau_e - tau_s - friction - load_e) * plant.per_motor_inertia
+    a_ms = (tau_ms - plant.stiffness_damping * omega_ms - tau_back) * plant.per_stiffness_inertia
     return omega_l, omega_e, omega_ms, a_l, a_e, a_ms
 
 
-@inlined
-def lag_shift(plant, gap, time):  # type: ignore[no-untyped-def]
-    """Return q [rad], q' [rad/s] after `time` [s] of a torque `gap` [N m] = tau(0) - u that dies with the lag."""
-    lag = plant.torque_lag_s
-    if lag == 0.0:
-        return 0.0, 0.0
-    grown = -math.expm1(-time / lag)
-    speed = gap / plant.motor_inertia * lag
-    return speed * (time - lag * grown), speed * grown
+class LagShares(NamedTuple):
+    """What the lag adds to theta_e and theta_e' per N m of torque gap, at the five later instants of a step."""
+
+    q2: float
+    q3: float
+    q4: float
+    q5: float
+    q6: float
+    rate2: float
+    rate3: float
+    rate4: float
+    rate5: float
+    rate6: float
+    left: float  # share of the gap that is left at the step's end
+
+
+def lag_shares(lag_s: float, inertia: float, step_s: float) -> LagShares:
+    """Return q and q' of q'' = exp(-t / lag) / J_e at the instants of a step of `step_s` [s]."""
+    if lag_s == 0.0:
+        return LagShares(*[0.0] * len(LagShares._fields))
+    times = [c * step_s for c in INSTANTS[1:]]
+    grown = [-math.expm1(-time / lag_s) for time in times]
+    shift = [lag_s * (time - lag_s * share) / inertia for time, share in zip(times, grown, strict=True)]
+    rate = [lag_s * share / inertia for share in grown]
+    return LagShares(*shift, *rate, math.exp(-step_s / lag_s))
 
 
 @inlined
-def dormand_prince_step(plant, y, gap, tau_e, tau_ms, link_terms, motor_terms, tick_time, time, h):  # type: ignore[no-untyped-def]
-    """Return y after one Dormand-Prince step of order 5 and length h [s] from `time`, with the torques held."""
-    k1 = motion(plant, y, 0.0, 0.0, tau_e, tau_ms, load(link_terms, tick_time, time), load(motor_terms, tick_time, time))
+def dormand_prince_step(plant, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, h):  # type: ignore[no-untyped-def]
+    """Return y after one Dormand-Prince step of order 5 and length h [s], with the torques held.
 
-    t = time + h / 5.0
-    q, q_rate = lag_shift(plant, gap, h / 5.0)
-    k2 = motion(plant, shifted_1(y, h, 1 / 5, k1), q, q_rate, tau_e, tau_ms,
-                load(link_terms, tick_time, t), load(motor_terms, tick_time, t))  # fmt: skip
-
-    t = time + 0.3 * h
-    q, q_rate = lag_shift(plant, gap, 0.3 * h)
-    k3 = motion(plant, shifted_2(y, h, 3 / 40, k1, 9 / 40, k2), q, q_rate, tau_e, tau_ms,
-                load(link_terms, tick_time, t), load(motor_terms, tick_time, t))  # fmt: skip
-
-    t = time + 0.8 * h
-    q, q_rate = lag_shift(plant, gap, 0.8 * h)
-    k4 = motion(plant, shifted_3(y, h, 44 / 45, k1, -56 / 15, k2, 32 / 9, k3), q, q_rate, tau_e, tau_ms,
-                load(link_terms, tick_time, t), load(motor_terms, tick_time, t))  # fmt: skip
-
-    t = time + h * 8.0 / 9.0
-    q, q_rate = lag_shift(plant, gap, h * 8.0 / 9.0)
+    `gap` is how far the motor's torque still is from `tau_e` [N m] at its start; `loads_l`, `loads_e` are the disturbance
+    torques [N m] at its six instants.
+    """
+    k1 = motion(plant, y, 0.0, 0.0, tau_e, tau_ms, loads_l[0], loads_e[0])
+    y2 = shifted_1(y, h, 1 / 5, k1)
+    k2 = motion(plant, y2, gap * lag.q2, gap * lag.rate2, tau_e, tau_ms, loads_l[1], loads_e[1])
+    y3 = shifted_2(y, h, 3 / 40, k1, 9 / 40, k2)
+    k3 = motion(plant, y3, gap * lag.q3, gap * lag.rate3, tau_e, tau_ms, loads_l[2], loads_e[2])
+    y4 = shifted_3(y, h, 44 / 45, k1, -56 / 15, k2, 32 / 9, k3)
+    k4 = motion(plant, y4, gap * lag.q4, gap * lag.rate4, tau_e, tau_ms, loads_l[3], loads_e[3])
     y5 = shifted_4(y, h, 19372 / 6561, k1, -25360 / 2187, k2, 64448 / 6561, k3, -212 / 729, k4)
-    k5 = motion(plant, y5, q, q_rate, tau_e, tau_ms, load(link_terms, tick_time, t), load(motor_terms, tick_time, t))
-
-    t = time + h
-    q, q_rate = lag_shift(plant, gap, h)
+    k5 = motion(plant, y5, gap * lag.q5, gap * lag.rate5, tau_e, tau_ms, loads_l[4], loads_e[4])
     y6 = shifted_5(y, h, 9017 / 3168, k1, -355 / 33, k2, 46732 / 5247, k3, 49 / 176, k4, -5103 / 18656, k5)
-    k6 = motion(plant, y6, q, q_rate, tau_e, tau_ms, load(link_terms, tick_time, t), load(motor_terms, tick_time, t))
-
+    k6 = motion(plant, y6, gap * lag.q6, gap * lag.rate6, tau_e, tau_ms, loads_l[5], loads_e[5])
     theta_l, theta_e, theta_ms, omega_l, omega_e, omega_ms = shifted_5(
         y, h, 35 / 384, k1, 500 / 1113, k3, 125 / 192, k4, -2187 / 6784, k5, 11 / 84, k6
     )
-    return theta_l, theta_e + q, theta_ms, omega_l, omega_e + q_rate, omega_ms
+    return theta_l, theta_e + gap * lag.q6, theta_ms, omega_l, omega_e + gap * lag.rate6, omega_ms
 
 
 @inlined
-def advance_plant(plant, state, tau_e, tau_ms, link_terms, motor_terms, time, sample_time_s):  # type: ignore[no-untyped-def]
+def advance_plant(plant, whole_lag, fine_lag, state, tau_e, tau_ms, link_terms, motor_terms, time, sample_time_s):  # type: ignore[no-untyped-def]
     """Return the state one sample period after `time` [s], with the torques [N m] held by the drives.
 
-    The end stops of the stiffness axis are inelastic. A disturbance term is active over whole periods.
+    `whole_lag`, `fine_lag` are the LagShares of a whole period and of one of its substeps, which a sharp friction near
+    standstill asks for. The end stops of the stiffness axis are inelastic.
     """
     y = (state.theta_l, state.theta_e, state.theta_ms, state.omega_l, state.omega_e, state.omega_ms)
-    torque = state.motor_torque
-    steps = 1
-    if plant.coulomb_friction != 0.0 and abs(state.omega_e) < 10.0 * plant.friction_velocity:
+    gap = state.motor_torque - tau_e
+    if plant.coulomb_friction == 0.0 or abs(state.omega_e) > 10.0 * plant.friction_velocity:
+        loads_l, loads_e = loads_of_period(link_terms, time), loads_of_period(motor_terms, time)
+        y = dormand_prince_step(plant, whole_lag, y, gap, tau_e, tau_ms, loads_l, loads_e, sample_time_s)
+        gap *= whole_lag.left
+    else:
         steps = int(plant.substeps)
-    h = sample_time_s / steps
-    for step in range(steps):
-        gap = torque - tau_e
-        y = dormand_prince_step(plant, y, gap, tau_e, tau_ms, link_terms, motor_terms, time, time + step * h, h)
-        if plant.torque_lag_s == 0.0:
-            torque = tau_e
-        else:
-            torque = tau_e + gap * math.exp(-h / plant.torque_lag_s)
+        h = sample_time_s / steps
+        for step in range(steps):
+            loads_l = loads_of_step(link_terms, time, time + step * h, h)
+            loads_e = loads_of_step(motor_terms, time, time + step * h, h)
+            y = dormand_prince_step(plant, fine_lag, y, gap, tau_e, tau_ms, loads_l, loads_e, h)
+            gap *= fine_lag.left
     theta_l, theta_e, theta_ms, omega_l, omega_e, omega_ms = y
     if theta_ms < plant.theta_ms_stiff:
         theta_ms, omega_ms = plant.theta_ms_stiff, max(omega_ms, 0.0)
     elif theta_ms > plant.theta_ms_soft:
         theta_ms, omega_ms = plant.theta_ms_soft, min(omega_ms, 0.0)
-    return PlantState(theta_l, omega_l, theta_e, omega_e, theta_ms, omega_ms, torque)
+    return PlantState(theta_l, omega_l, theta_e, omega_e, theta_ms, omega_ms, tau_e + gap)

@@ -7,6 +7,7 @@ stiffness moves, and with the algebraic loop of Eqs. (9) and (16) solved.
 import math
 from typing import NamedTuple
 
+from vssea_core.actuator.spring import leaf
 from vssea_core.compiled import inlined
 
 STATE_FEEDBACK, SLIDING_MODE = 0.0, 1.0
@@ -92,10 +93,9 @@ def act(law, memory, target, stiffness_target):  # type: ignore[no-untyped-def]
     """Return the Terms of this tick from the observers' memory and both references."""
     link, motor, stiffness = memory.link, memory.motor, memory.stiffness
     theta_ms = stiffness.measured
-    half = 0.5 * (motor.theta - link.theta)
-    stretch = law.spring_constant / (theta_ms * theta_ms * theta_ms)
-    tau_s = stretch * math.sin(half)
-    k = 0.5 * stretch * math.cos(half)
+    spring = leaf(motor.theta - link.theta, theta_ms)
+    tau_s = law.spring_constant * spring.torque
+    k = law.spring_constant * spring.stiffness
 
     ms_rate = stiffness.omega / theta_ms
     ms_acceleration = stiffness_target.r2 / theta_ms

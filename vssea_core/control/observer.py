@@ -5,9 +5,9 @@ law. The spring is remembered as a shape without parameters, so a change of the 
 was already estimated.
 """
 
-import math
 from typing import NamedTuple
 
+from vssea_core.actuator.spring import leaf
 from vssea_core.compiled import inlined
 
 
@@ -64,10 +64,10 @@ class Channel(NamedTuple):
 
 
 class Spring(NamedTuple):
-    """The spring at the last tick, from measured positions and without Y_tau, and whether there was a last tick."""
+    """The spring at the last tick from measured positions, without Y_tau, and whether there was a last tick."""
 
-    torque: float  # sin(delta/2) / theta_ms^3
-    back: float  # -12 sin^2(delta/4) / theta_ms^4
+    torque: float
+    back: float
     started: float
 
 
@@ -78,17 +78,6 @@ class Memory(NamedTuple):
     motor: Channel
     stiffness: Channel
     spring: Spring
-
-
-@inlined
-def spring_shape(theta_l, theta_e, theta_ms):  # type: ignore[no-untyped-def]
-    """Return the Spring of these positions [rad]: Eq. (3) and the energy's back torque, both divided by Y_tau."""
-    half = 0.5 * (theta_e - theta_l)
-    cube = theta_ms * theta_ms * theta_ms
-    quarter_sine = math.sin(0.5 * half)
-    # sin(2x) = 2 sin x cos x, and cos x > 0 while the deflection stays inside +-2 pi
-    sine = 2.0 * quarter_sine * math.sqrt(1.0 - quarter_sine * quarter_sine)
-    return Spring(sine / cube, -12.0 * quarter_sine * quarter_sine / (cube * theta_ms), 1.0)
 
 
 @inlined
@@ -133,7 +122,8 @@ def updated_position_form(gains, channel, theta, phi0, phi1):  # type: ignore[no
 @inlined
 def started(model, y, applied_e, applied_ms):  # type: ignore[no-untyped-def]
     """Return the memory of a first tick: at rest in equilibrium, d = f and d' = d'' = 0 (zero would kick the motor)."""
-    shape = spring_shape(y.theta_l, y.theta_e, y.theta_ms)
+    spring = leaf(y.theta_e - y.theta_l, y.theta_ms)
+    shape = Spring(spring.torque, spring.back, 1.0)
     tau_s = model.spring_constant * shape.torque
     tau_back = model.spring_constant * shape.back
     d_l = tau_s / model.link_inertia
@@ -153,7 +143,8 @@ def observe(prepared, memory, y, applied_e, applied_ms):  # type: ignore[no-unty
     law = prepared.law
     if memory.spring.started == 0.0:
         return started(law, y, applied_e, applied_ms)
-    shape = spring_shape(y.theta_l, y.theta_e, y.theta_ms)
+    spring = leaf(y.theta_e - y.theta_l, y.theta_ms)
+    shape = Spring(spring.torque, spring.back, 1.0)
     past = memory.spring
     tau_s0 = law.spring_constant * past.torque
     tau_s1 = law.spring_constant * shape.torque

@@ -1,7 +1,7 @@
 """Disturbance torques over time, as rows of numbers for the kernel.
 
 A term is active over whole sample periods: from the first tick at or after its start to the first at or after its end.
-Its value still varies inside the period.
+Its value still varies inside the period: the integrator asks for it at the six instants of its step.
 """
 
 import math
@@ -15,18 +15,34 @@ from vssea_core.signals.documents import Disturbance
 
 CONSTANT, SINE = 0.0, 1.0
 TIME_SLACK_S = 1e-9  # tick times are k T in floating point
+INSTANTS = (0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0)
+"""Instants of the integrator's step, as shares of its length (Dormand-Prince, order 5)."""
+C2, C3, C4, C5, C6 = INSTANTS[1:]
 
 
-def disturbance_rows(terms: Sequence[Disturbance]) -> NDArray[np.float64]:
-    """Return the terms as an array (n, 6): kind, amplitude [N m], angular frequency [rad/s], phase [rad], start, end [s]."""
-    rows = np.zeros((len(terms), 6))
+def disturbance_rows(terms: Sequence[Disturbance], sample_time_s: float) -> NDArray[np.float64]:
+    """Return the terms as an array (n, 16).
+
+    Columns: kind, amplitude [N m], angular frequency [rad/s], phase [rad], start, end [s], then cosine and sine of the
+    angle that passes from a tick to each of the five later instants of a whole period.
+    """
+    rows = np.zeros((len(terms), 16))
     for row, term in zip(rows, terms, strict=True):
         end = math.inf if term.end_s is None else term.end_s
         if term.kind == "constant":
-            row[:] = CONSTANT, term.torque, 0.0, 0.0, term.start_s, end
+            row[:6] = CONSTANT, term.torque, 0.0, 0.0, term.start_s, end
         else:
-            row[:] = SINE, term.amplitude, 2.0 * math.pi * term.frequency_hz, term.phase, term.start_s, end
+            frequency = 2.0 * math.pi * term.frequency_hz
+            row[:6] = SINE, term.amplitude, frequency, term.phase, term.start_s, end
+            angles = frequency * sample_time_s * np.array(INSTANTS[1:])
+            row[6:11], row[11:16] = np.cos(angles), np.sin(angles)
     return rows
+
+
+@inlined
+def active(row, tick_time):  # type: ignore[no-untyped-def]
+    """Return whether a term acts over the period that starts at `tick_time` [s]."""
+    return row[4] <= tick_time + TIME_SLACK_S and tick_time + TIME_SLACK_S < row[5]
 
 
 @inlined
@@ -34,12 +50,48 @@ def load(rows, tick_time, time):  # type: ignore[no-untyped-def]
     """Return the sum [N m] at `time` [s] of the terms that are active in the period starting at `tick_time`."""
     total = 0.0
     for i in range(rows.shape[0]):
-        if rows[i, 4] <= tick_time + TIME_SLACK_S and tick_time + TIME_SLACK_S < rows[i, 5]:
-            if rows[i, 0] == CONSTANT:
-                total += rows[i, 1]
+        row = rows[i]
+        if active(row, tick_time):
+            if row[0] == CONSTANT:
+                total += row[1]
             else:
-                total += rows[i, 1] * math.sin(rows[i, 2] * time + rows[i, 3])
+                total += row[1] * math.sin(row[2] * time + row[3])
     return total
+
+
+@inlined
+def loads_of_period(rows, time):  # type: ignore[no-untyped-def]
+    """Return the torques [N m] at the six instants of the period that starts at the tick at `time` [s]."""
+    a = b = c = d = e = f = 0.0
+    for i in range(rows.shape[0]):
+        row = rows[i]
+        if active(row, time):
+            size = row[1]
+            if row[0] == CONSTANT:
+                a, b, c, d, e, f = a + size, b + size, c + size, d + size, e + size, f + size
+            else:
+                angle = row[2] * time + row[3]
+                sine, cosine = size * math.sin(angle), size * math.cos(angle)
+                a += sine
+                b += sine * row[6] + cosine * row[11]
+                c += sine * row[7] + cosine * row[12]
+                d += sine * row[8] + cosine * row[13]
+                e += sine * row[9] + cosine * row[14]
+                f += sine * row[10] + cosine * row[15]
+    return a, b, c, d, e, f
+
+
+@inlined
+def loads_of_step(rows, tick_time, time, h):  # type: ignore[no-untyped-def]
+    """Return the torques [N m] at the six instants of a step of `h` [s] inside the period that starts at `tick_time`."""
+    return (
+        load(rows, tick_time, time),
+        load(rows, tick_time, time + C2 * h),
+        load(rows, tick_time, time + C3 * h),
+        load(rows, tick_time, time + C4 * h),
+        load(rows, tick_time, time + C5 * h),
+        load(rows, tick_time, time + C6 * h),
+    )
 
 
 @entry

@@ -33,6 +33,7 @@ class Slew(NamedTuple):
     duration_s: float
     set_at_s: float
     bandwidth: float  # of the filter
+    shrink: float  # exp(-bandwidth T)
     speed: float  # largest slew of theta_ms [rad/s]
     torque_reserve: float
     motor_inertia: float
@@ -44,7 +45,7 @@ SLEWED_SIZE = 4  # slewed command, filter output, its rate and acceleration
 
 
 def slew_row(
-    reference: StiffnessReference, tuning: Tuning, mechanism: StiffnessMechanism, set_at_s: float = 0.0
+    reference: StiffnessReference, tuning: Tuning, mechanism: StiffnessMechanism, sample_time_s: float, set_at_s: float = 0.0
 ) -> NDArray[np.float64]:
     """Return the numbers of a Slew for the kernel."""
     constant = tuning.model.spring_constant
@@ -57,6 +58,7 @@ def slew_row(
             *timing,
             set_at_s,
             tuning.stiffness_loop.reference_bandwidth,
+            math.exp(-tuning.stiffness_loop.reference_bandwidth * sample_time_s),
             SPEED_SHARE * mechanism.speed_limit,
             tuning.stiffness_loop.torque_reserve,
             tuning.model.motor_inertia,
@@ -94,7 +96,7 @@ def advance_stiffness(slew, slewed, now, tau_s, sample_time_s):  # type: ignore[
         gap = math.copysign(fastest * t, gap)
     slewed[0] = theta + gap
 
-    shrink = math.exp(-w * t)
+    shrink = slew.shrink
     y0 = slewed[1] - slewed[0]
     y1 = slewed[2] + w * y0
     y2 = slewed[3] + w * (2.0 * slewed[2] + w * y0)

@@ -11,16 +11,15 @@ from numba.np.unsafe.ndarray import to_fixed_tuple
 from vssea_core.actuator.drive import (
     END_STOP, LEAF_TORQUE, STIFFNESS_RATE, Heat, limit_motor_torque, limit_stiffness_torque, warmed,
 )  # fmt: skip
-from vssea_core.actuator.dynamics import PlantState, advance_plant
+from vssea_core.actuator.dynamics import PlantState, advance_plant, dry_friction
 from vssea_core.actuator.sensors import measure
-from vssea_core.actuator.spring import spring_stiffness, spring_torque
+from vssea_core.actuator.spring import leaf
 from vssea_core.compiled import entry, inlined
 from vssea_core.control.prepared import MEMORY_SIZE, keep_memory, loaded_memory, loaded_prepared
 from vssea_core.control.step import step
 from vssea_core.signals.disturbances import load
 from vssea_core.signals.references import TRANSITION_SIZE, decay_transition, reference_at, with_transition
 from vssea_core.signals.stiffness import SLEW_SIZE, SLEWED_SIZE, Slew, advance_stiffness
-from vssea_core.actuator.dynamics import dry_friction
 from vssea_core.simulation.state import APPLIED, HEAT, MEMORY, PENDING, PLANT, SLEWED, TRANSITION, loaded_rig
 
 RUNNING, NOT_FINITE, SPRING_LEFT, RAN_AWAY = 0, 1, 2, 3
@@ -92,10 +91,11 @@ def run(rig_row, before, prepared, reference, slew_row, link_terms, motor_terms,
 
         if i % every == 0:
             deflection = now.theta_e - now.theta_l
-            tau_s = spring_torque(plant.spring_constant, deflection, now.theta_ms)
-            k = spring_stiffness(plant.spring_constant, deflection, now.theta_ms)
+            spring = leaf(deflection, now.theta_ms)
+            tau_s = plant.spring_constant * spring.torque
+            k = plant.spring_constant * spring.stiffness
             bits |= stiffness_bits
-            if abs(tau_s) > drives.leaf_torque * (abs(k) / 1000.0) ** (1.0 / 3.0):
+            if abs(tau_s * tau_s * tau_s) > drives.leaf_cube * abs(k):
                 bits |= LEAF_TORQUE
             if rate_limited:
                 bits |= STIFFNESS_RATE
@@ -133,7 +133,9 @@ def run(rig_row, before, prepared, reference, slew_row, link_terms, motor_terms,
             row[28] = tuning_id
 
         heat = warmed(drives, heat, applied_e, applied_ms)
-        following = advance_plant(plant, now, applied_e, applied_ms, link_terms, motor_terms, time, period)
+        following = advance_plant(
+            plant, rig.whole_lag, rig.fine_lag, now, applied_e, applied_ms, link_terms, motor_terms, time, period
+        )
         end = health(following)
         if end != RUNNING:
             break

@@ -36,7 +36,7 @@ def simulate(scenario: Scenario, every: int = 1) -> Trajectory:
         prepared,
         prepared,
         reference_row(scenario.reference),
-        slew_row(scenario.stiffness_reference, scenario.tuning, scenario.actuator.stiffness),
+        slew_row(scenario.stiffness_reference, scenario.tuning, scenario.actuator.stiffness, period),
         inputs.link_terms,
         inputs.motor_terms,
         True,

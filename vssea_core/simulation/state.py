@@ -10,7 +10,7 @@ from numba.np.unsafe.ndarray import to_fixed_tuple
 from numpy.typing import NDArray
 
 from vssea_core.actuator.drive import Drives, Heat
-from vssea_core.actuator.dynamics import Plant, PlantState
+from vssea_core.actuator.dynamics import LagShares, Plant, PlantState, lag_shares
 from vssea_core.actuator.parameters import Actuator
 from vssea_core.actuator.sensors import Encoders, encoders
 from vssea_core.actuator.spring import equilibrium_deflection, stiffness_motor_position
@@ -36,6 +36,8 @@ class Rig(NamedTuple):
     """The simulated rig as the kernel takes it: true plant, drives, encoders and timing."""
 
     plant: Plant
+    whole_lag: LagShares
+    fine_lag: LagShares
     drives: Drives
     encoders: Encoders
     sample_time_s: float
@@ -56,15 +58,14 @@ def plant_numbers(actuator: Actuator, sample_time_s: float) -> Plant:
     link, motor, mechanism = actuator.link, actuator.motor, actuator.stiffness
     sharpness = motor.coulomb_friction * sample_time_s / (motor.inertia * motor.friction_velocity)
     return Plant(
-        link.inertia,
+        1.0 / link.inertia,
         link.damping,
-        motor.inertia,
+        1.0 / motor.inertia,
         motor.damping,
         motor.coulomb_friction,
         motor.friction_velocity,
-        motor.torque_lag_s,
         mechanism.spring_constant,
-        mechanism.inertia,
+        1.0 / mechanism.inertia,
         mechanism.damping,
         stiffness_motor_position(mechanism.stiffest, mechanism.spring_constant),
         stiffness_motor_position(mechanism.softest, mechanism.spring_constant),
@@ -89,27 +90,33 @@ def drive_numbers(actuator: Actuator, sample_time_s: float) -> Drives:
         mechanism.continuous_torque,
         mechanism.speed_limit,
         math.exp(-sample_time_s / motor.thermal_time_s),
-        mechanism.leaf_torque,
+        mechanism.leaf_torque**3 / 1000.0,
     )
 
 
 def rig_row(scenario: Scenario) -> Numbers:
     """Return the simulated rig of `scenario` as one array, in the order of Rig."""
     period = scenario.timing.sample_time_s
+    motor = scenario.actuator.motor
+    plant = plant_numbers(scenario.actuator, period)
     return np.array(
         [
-            *plant_numbers(scenario.actuator, period),
+            *plant,
+            *lag_shares(motor.torque_lag_s, motor.inertia, period),
+            *lag_shares(motor.torque_lag_s, motor.inertia, period / plant.substeps),
             *drive_numbers(scenario.actuator, period),
-            *encoders(scenario.sensors, scenario.actuator.motor),
+            *encoders(scenario.sensors, motor),
             period,
             float(scenario.timing.compute_delay_samples),
         ]
     )
 
 
-PLANT_SIZE, DRIVES_SIZE, ENCODERS_SIZE = len(Plant._fields), len(Drives._fields), len(Encoders._fields)
-_DRIVES_AT = PLANT_SIZE
-_ENCODERS_AT = PLANT_SIZE + DRIVES_SIZE
+PLANT_SIZE, LAG_SIZE = len(Plant._fields), len(LagShares._fields)
+DRIVES_SIZE, ENCODERS_SIZE = len(Drives._fields), len(Encoders._fields)
+_FINE_AT = PLANT_SIZE + LAG_SIZE
+_DRIVES_AT = _FINE_AT + LAG_SIZE
+_ENCODERS_AT = _DRIVES_AT + DRIVES_SIZE
 _TIMING_AT = _ENCODERS_AT + ENCODERS_SIZE
 
 
@@ -117,7 +124,9 @@ _TIMING_AT = _ENCODERS_AT + ENCODERS_SIZE
 def loaded_rig(row):  # type: ignore[no-untyped-def]
     """Return the Rig of an array made by `rig_row`."""
     return Rig(
-        Plant(*to_fixed_tuple(row[:_DRIVES_AT], PLANT_SIZE)),
+        Plant(*to_fixed_tuple(row[:PLANT_SIZE], PLANT_SIZE)),
+        LagShares(*to_fixed_tuple(row[PLANT_SIZE:_FINE_AT], LAG_SIZE)),
+        LagShares(*to_fixed_tuple(row[_FINE_AT:_DRIVES_AT], LAG_SIZE)),
         Drives(*to_fixed_tuple(row[_DRIVES_AT:_ENCODERS_AT], DRIVES_SIZE)),
         Encoders(*to_fixed_tuple(row[_ENCODERS_AT:_TIMING_AT], ENCODERS_SIZE)),
         row[_TIMING_AT],
@@ -135,8 +144,8 @@ def equilibrium_state(scenario: Scenario) -> Numbers:
     stiff = stiffness_motor_position(mechanism.stiffest, mechanism.spring_constant)
     soft = stiffness_motor_position(mechanism.softest, mechanism.spring_constant)
     at = min(max(theta_ms, stiff), soft)
-    link_load = load_at(disturbance_rows(scenario.disturbances.link), 0.0)
-    motor_load = load_at(disturbance_rows(scenario.disturbances.motor), 0.0)
+    inputs = inputs_of(scenario)
+    link_load, motor_load = load_at(inputs.link_terms, 0.0), load_at(inputs.motor_terms, 0.0)
     deflection = equilibrium_deflection(link_load, mechanism.spring_constant, at)
     back = -12.0 * mechanism.spring_constant * math.sin(deflection / 4.0) ** 2 / at**4
     if mechanism.back_torque == "paper":
@@ -152,6 +161,5 @@ def equilibrium_state(scenario: Scenario) -> Numbers:
 
 def inputs_of(scenario: Scenario) -> Inputs:
     """Return the rig and the disturbance terms of `scenario` as arrays."""
-    return Inputs(
-        rig_row(scenario), disturbance_rows(scenario.disturbances.link), disturbance_rows(scenario.disturbances.motor)
-    )
+    terms, period = scenario.disturbances, scenario.timing.sample_time_s
+    return Inputs(rig_row(scenario), disturbance_rows(terms.link, period), disturbance_rows(terms.motor, period))

@@ -1,0 +1,58 @@
+/**
+ * Every key of the page, once: the bindings and the `?` dialog read this table. `does` names an action given to
+ * `bindKeys`. Only a key with `whileTyping` acts in a text field.
+ */
+export const KEYS = [
+  { key: "Escape", shown: "Esc", does: "stop", text: "Stop: zero motor torque at once. Also while typing.", whileTyping: true },
+  { key: " ", shown: "Space", does: "pauseOrResume", text: "Pause or resume" },
+  { key: ".", shown: ".", does: "step", text: "Step one sample, while paused" },
+  { key: "f", shown: "F", does: "freeze", text: "Freeze the picture, or follow again; the recording goes on" },
+  { key: "c", shown: "C", does: "cursors", text: "Measuring cursors: click sets A, then B" },
+  { key: "z", shown: "Ctrl+Z", does: "undo", text: "Undo a change made on this page", ctrl: true },
+  { key: "z", shown: "Ctrl+Shift+Z", does: "redo", text: "Redo", ctrl: true, shift: true },
+  { key: "s", shown: "Ctrl+S", does: "savePreset", text: "Save the preset", ctrl: true, whileTyping: false },
+  { key: "1", shown: "1", does: "viewTune", text: "View: Tune" },
+  { key: "?", shown: "?", does: "showKeys", text: "These keys" },
+];
+
+/** Keys that the focused control itself understands; listed in the dialog, bound where they act. */
+export const ROW_KEYS = [
+  { shown: "← → ↑ ↓", text: "On a slider or in a number box: one step; Shift ten steps, Alt a tenth" },
+  { shown: "Enter", text: "In a number box: apply" },
+  { shown: "Double click", text: "On a name or slider: back to the preset’s value. On a plot: follow again" },
+  { shown: "Wheel", text: "Over a y axis: scale it" },
+];
+
+const NOT_TYPING = new Set(["range", "radio", "checkbox", "button"]);
+
+function isTyping(target) {
+  if (target instanceof HTMLInputElement) return !NOT_TYPING.has(target.type);
+  return target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement || target.isContentEditable === true;
+}
+
+/** A focused button or link takes the space bar for itself. */
+function isPressable(target) {
+  return target instanceof HTMLButtonElement || target instanceof HTMLAnchorElement || target.tagName === "SUMMARY" || target instanceof HTMLInputElement;
+}
+
+/** Listen for all keys of the table. @param {Object<string, () => void>} actions one function for each `does` */
+export function bindKeys(actions) {
+  addEventListener(
+    "keydown",
+    (event) => {
+      const bound = KEYS.find((entry) => matches(entry, event));
+      if (!bound || (!bound.whileTyping && (isTyping(event.target) || document.querySelector("dialog[open]")))) return;
+      if (bound.key === " " && isPressable(event.target)) return;
+      if (!bound.whileTyping) event.preventDefault();
+      if (!event.repeat) actions[bound.does]();
+    },
+    { capture: true },
+  );
+}
+
+function matches(entry, event) {
+  const ctrl = event.ctrlKey || event.metaKey;
+  if (event.altKey || Boolean(entry.ctrl) !== ctrl) return false;
+  if (entry.ctrl && Boolean(entry.shift) !== event.shiftKey) return false;
+  return entry.key.toLowerCase() === event.key.toLowerCase();
+}

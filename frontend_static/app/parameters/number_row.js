@@ -1,0 +1,114 @@
+import { element } from "../element.js";
+import { inputText, readNumber } from "../quantity.js";
+import { ParameterRow } from "./parameter_row.js";
+import { SliderScale } from "./slider_scale.js";
+import { SliderStream } from "./slider_stream.js";
+
+const STEP_GESTURE_MS = 1000;
+
+/** A number: slider, box and unit. */
+export class NumberRow extends ParameterRow {
+  #isDragging = false;
+  #isTyping = false;
+  #gesture = Symbol("gesture");
+  #steppedAt = -Infinity;
+
+  constructor(field, place, hint) {
+    const label = `${field.title}${field.unit ? `, ${field.unit}` : ""}`;
+    const slider = element("input", { type: "range", min: 0, max: SliderScale.positions, step: 1, "aria-label": label });
+    const box = element("input", { type: "text", inputmode: "decimal", autocomplete: "off", spellcheck: "false", "aria-label": label });
+    super(field, place, hint, [slider, box, element("span", { class: "row-unit" }, field.unit)]);
+    this.slider = slider;
+    this.box = box;
+    this.scale = new SliderScale(field);
+    this.stream = new SliderStream((value) => this.send(value, this.#gesture));
+    this.#listenToSlider();
+    this.#listenToBox();
+  }
+
+  get isBusy() {
+    return this.#isDragging || this.#isTyping;
+  }
+
+  words(value) {
+    return typeof value === "number" ? `${inputText(value)}${this.field.unit ? ` ${this.field.unit}` : ""}` : String(value);
+  }
+
+  show(value) {
+    this.box.value = inputText(value);
+    this.box.removeAttribute("aria-invalid");
+    this.#place(value);
+  }
+
+  #place(value) {
+    this.slider.value = this.scale.position(value);
+    this.slider.style.setProperty("--share", this.slider.value / SliderScale.positions);
+    this.slider.setAttribute("aria-valuetext", this.words(value));
+  }
+
+  #listenToSlider() {
+    const { slider } = this;
+    slider.addEventListener("pointerdown", () => {
+      this.#isDragging = true;
+      this.#gesture = Symbol("drag");
+    });
+    slider.addEventListener("input", () => {
+      const value = this.scale.value(Number(slider.value));
+      slider.style.setProperty("--share", slider.value / SliderScale.positions);
+      this.box.value = inputText(value);
+      this.stream.move(value);
+    });
+    const release = () => {
+      this.#isDragging = false;
+      this.stream.flush();
+    };
+    slider.addEventListener("change", release);
+    slider.addEventListener("pointerup", release);
+    slider.addEventListener("pointercancel", release);
+    slider.addEventListener("keydown", (event) => this.#stepByKey(event));
+    slider.addEventListener("dblclick", () => this.reset());
+  }
+
+  #listenToBox() {
+    const { box } = this;
+    box.addEventListener("focus", () => box.select());
+    box.addEventListener("input", () => {
+      this.#isTyping = true;
+      box.removeAttribute("aria-invalid");
+    });
+    box.addEventListener("blur", () => this.#commit());
+    box.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") this.#commit();
+      else this.#stepByKey(event, ["ArrowUp", "ArrowDown"]);
+    });
+  }
+
+  #stepByKey(event, keys = ["ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight"]) {
+    if (!keys.includes(event.key)) return;
+    event.preventDefault();
+    const now = performance.now();
+    if (now - this.#steppedAt > STEP_GESTURE_MS) this.#gesture = Symbol("steps");
+    this.#steppedAt = now;
+    const direction = event.key === "ArrowUp" || event.key === "ArrowRight" ? 1 : -1;
+    const size = event.shiftKey ? 10 : event.altKey ? 0.1 : 1;
+    const from = readNumber(this.box.value);
+    const value = this.scale.stepped(Number.isNaN(from) ? this.echoed : from, direction * size);
+    this.#isTyping = false;
+    this.show(value);
+    this.stream.move(value);
+  }
+
+  async #commit() {
+    if (!this.#isTyping) return;
+    this.#isTyping = false;
+    const typed = this.box.value;
+    const value = readNumber(typed);
+    if (!Number.isFinite(value)) {
+      this.show(this.echoed);
+      this.say(`“${typed.trim()}” is not a number; kept ${this.words(this.echoed)}`, "refused");
+    } else if (Object.is(value, this.echoed)) this.show(value);
+    else if (!(await this.send(value, Symbol("typed"))) && this.root.contains(document.activeElement)) {
+      this.box.setAttribute("aria-invalid", "true");
+    }
+  }
+}

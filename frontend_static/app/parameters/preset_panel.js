@@ -1,0 +1,115 @@
+import { element, setText } from "../element.js";
+import { inputText } from "../quantity.js";
+import { rest } from "../session/rest.js";
+import { Panel } from "./panel.js";
+
+/** Saved tunings: save, apply, delete, and what was changed since. */
+export class PresetPanel {
+  #presets = [];
+
+  constructor(layout, desk) {
+    this.desk = desk;
+    this.panel = new Panel(layout);
+    this.root = this.panel.root;
+    this.name = element("input", { type: "text", "aria-label": "Preset name", placeholder: "name of this tuning", maxlength: 80, autocomplete: "off", spellcheck: "false" });
+    this.name.addEventListener("keydown", (event) => event.key === "Enter" && this.save());
+    this.saveButton = element("button", { type: "button", title: "Save the tuning in force under this name (Ctrl+S)", click: () => this.save() }, "Save");
+    this.select = element("select", { "aria-label": "Saved presets", change: () => this.#enable() });
+    this.applyButton = element("button", { type: "button", click: () => this.#apply() }, "Apply");
+    this.deleteButton = element("button", { type: "button", class: "quiet", click: () => this.#delete() }, "Delete");
+    this.changes = element("p", { class: "preset-changes", hidden: true });
+    this.panel.body.append(
+      element("div", { class: "line" }, this.name, this.saveButton),
+      element("div", { class: "line" }, this.select, this.applyButton, this.deleteButton),
+      this.changes,
+    );
+    desk.session.addEventListener("hello", () => this.#fetch());
+    desk.session.addEventListener("presets", () => this.#fetch());
+    this.#list();
+  }
+
+  echo() {
+    const { preset } = this.desk.document;
+    setText(this.panel.aside, preset?.name ?? "");
+    if (preset && !this.name.value && document.activeElement !== this.name) this.name.value = preset.name;
+    this.#sayChanges();
+  }
+
+  /** Save under the name in the box; without one, ask for it. */
+  async save() {
+    const name = this.name.value.trim();
+    if (!name) {
+      this.root.open = true;
+      return this.name.focus();
+    }
+    await this.#command("save_preset", { name });
+  }
+
+  async #apply() {
+    const before = structuredClone(this.desk.document.value("tuning"));
+    const preset = this.#presets.find(({ name }) => name === this.select.value);
+    if (!(await this.#command("apply_preset", { name: this.select.value }))) return;
+    this.name.value = this.select.value;
+    if (preset?.tuning) this.desk.edits.remember("tuning", before, preset.tuning);
+  }
+
+  #delete() {
+    return this.#command("delete_preset", { name: this.select.value });
+  }
+
+  async #command(command, args) {
+    try {
+      await this.desk.session.command(command, args);
+      await this.#fetch();
+      return true;
+    } catch (refusal) {
+      this.desk.session.note(refusal.message);
+      return false;
+    }
+  }
+
+  async #fetch() {
+    try {
+      this.#presets = await rest("GET", "/api/presets");
+    } catch (refusal) {
+      this.desk.session.note(refusal.message);
+    }
+    this.#list();
+  }
+
+  #list() {
+    const chosen = this.select.value || this.desk.document.preset?.name;
+    const options = this.#presets.map(({ name }) => new Option(name, name, false, name === chosen));
+    this.select.replaceChildren(...(options.length ? options : [new Option("none saved yet", "")]));
+    this.#enable();
+  }
+
+  #enable() {
+    const isChosen = this.select.value !== "";
+    this.applyButton.disabled = this.deleteButton.disabled = this.select.disabled = !isChosen;
+  }
+
+  #sayChanges() {
+    const { baseline } = this.desk;
+    const changes = baseline.tuningChanges();
+    this.changes.hidden = changes.length === 0;
+    if (!changes.length) return;
+    const count = `${changes.length} field${changes.length === 1 ? "" : "s"} changed since ${baseline.name}`;
+    const which = changes.map((change) => `${this.#title(change.path)} ${this.#words(change.from)} → ${this.#words(change.to)}`);
+    setText(this.changes, count);
+    this.changes.title = which.join("\n");
+    this.changes.append(element("span", { class: "preset-which" }, which.join(", ")));
+  }
+
+  #title(path) {
+    const names = path.split(".");
+    const name = names.pop();
+    const part = names.join(".");
+    if (name === "kind") return names.at(-1).replaceAll("_", " ");
+    return this.desk.schema.field(part, name, this.desk.document.value(`${part}.kind`))?.title ?? name;
+  }
+
+  #words(value) {
+    return typeof value === "number" ? inputText(value) : String(value).replaceAll("_", " ");
+  }
+}

@@ -1,0 +1,244 @@
+import uPlot from "/vendor/uPlot.esm.js";
+import { element } from "../element.js";
+import { EventMarks } from "./event_marks.js";
+import { Legend } from "./legend.js";
+import { extent, linePath } from "./line_path.js";
+import { niceTicks, tickTexts } from "./nice_ticks.js";
+import { YRange } from "./y_range.js";
+
+const LEFT_PX = 52;
+const RIGHT_PX = 44;
+const TIME_AXIS_PX = 22;
+const TICK_EVERY_PX = 26;
+const FONT = '11px system-ui, -apple-system, "Segoe UI", sans-serif';
+
+/** One of the stacked charts: legend strip, uPlot, and y scales that keep still. */
+export class Chart {
+  #limitIsNear = false;
+  #unlike = new Set();
+  #legendAt = 0;
+
+  /** @param {object} layout entry of chart_list.js @param {object} stack {session, palette, timeWindow, cursors, marks, redraw} */
+  constructor(layout, stack, { hasTimeAxis, isTop }) {
+    this.layout = layout;
+    this.stack = stack;
+    this.hasTimeAxis = hasTimeAxis;
+    this.isTop = isTop;
+    this.ranges = { left: new YRange(layout.left.smallest), right: layout.right ? new YRange(layout.right.smallest) : null };
+    this.series = layout.series.map((series) => ({ side: "left", label: stack.session.channels.get(series.channel)?.label ?? series.channel, ...series }));
+    this.legend = this.#makeLegend();
+    this.canvasArea = element("div", { class: "chart-area" });
+    this.root = element("section", { class: "chart", id: `chart-${layout.id}`, "aria-label": layout.name }, this.legend.root, this.canvasArea);
+  }
+
+  /** Make the uPlot, once the area has a size. */
+  build(width, height) {
+    this.plot = new uPlot(this.#options(width, height), this.#data({ time: new Float64Array(0), column: () => new Float32Array(0) }, 0, 0), this.canvasArea);
+    this.plot.root.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
+    this.plot.over.addEventListener("click", (event) => this.#click(event));
+    this.plot.over.addEventListener("pointerdown", (event) => (this.pressedAt = event.clientX));
+  }
+
+  resize(width, height) {
+    this.plot.setSize({ width, height });
+  }
+
+  /** Scale and draw the samples [first, last] of a picture over the time span [from, to]. */
+  draw(picture, first, last, [from, to], now) {
+    this.#follow(picture, first, last, now);
+    this.plot.batch(() => {
+      this.plot.setData(this.#data(picture, first, last + 1), false);
+      this.plot.setScale("x", { min: from, max: to });
+    });
+  }
+
+  /** Put the values at one sample into the legend. */
+  tell(picture, at) {
+    const { cursors } = this.stack;
+    for (const { item, series } of this.told) {
+      const { min, max } = this.ranges[series.side];
+      item.show(at < 0 ? NaN : picture.column(series.channel)[at], Math.max(Math.abs(min), Math.abs(max)), cursors.difference(series.channel));
+      if (series.onlyWhenUnlike) item.root.hidden = !this.#unlike.has(series.channel);
+    }
+    if (this.limitItem) this.limitItem.show(at < 0 ? NaN : picture.column(this.layout.limit.channel)[at], 100, NaN);
+    this.legend.scaleReset.hidden = !this.ranges.left.isManual && !this.ranges.right?.isManual;
+  }
+
+  freshScales() {
+    for (const range of Object.values(this.ranges)) range?.reset();
+  }
+
+  #makeLegend() {
+    const { layout, stack } = this;
+    const inOrder = [...this.series].sort((a, b) => Boolean(b.isFirstInLegend) - Boolean(a.isFirstInLegend));
+    const entries = inOrder.map((series) => ({
+      label: series.label,
+      colour: `series-${series.colour}`,
+      isDashed: Boolean(series.dash),
+      isHidden: Boolean(series.isHidden),
+      unit: layout[series.side].unit,
+      factor: layout[series.side].factor ?? 1,
+      toggle: (isHidden) => {
+        series.isHidden = isHidden;
+        this.plot.setSeries(this.series.indexOf(series) + 1, { show: !isHidden });
+        this.ranges[series.side].isFresh = true;
+        stack.redraw();
+      },
+    }));
+    if (layout.limit) entries.push({ label: layout.limit.label, colour: "limit-line", unit: layout.left.unit, factor: layout.left.factor ?? 1, isStatic: true });
+    const legend = new Legend(entries);
+    this.told = inOrder.map((series, i) => ({ series, item: legend.items[i] }));
+    this.limitItem = layout.limit ? legend.items.at(-1) : null;
+    legend.scaleReset.addEventListener("click", () => {
+      this.freshScales();
+      stack.redraw();
+    });
+    return legend;
+  }
+
+  #data(picture, from, to) {
+    const channels = [...this.series.map(({ channel }) => channel), ...(this.layout.limit ? Array(2).fill(this.layout.limit.channel) : [])];
+    return [picture.time.subarray(from, to), ...channels.map((name) => picture.column(name).subarray(from, to))];
+  }
+
+  #follow(picture, first, last, now) {
+    const { limit } = this.layout;
+    for (const [side, range] of Object.entries(this.ranges)) {
+      if (!range) continue;
+      let reach = [Infinity, -Infinity];
+      for (const series of this.series) {
+        if (series.onlyWhenUnlike) this.#compare(picture, series, first, last);
+        if (series.side === side && !series.isHidden) reach = extent(picture.column(series.channel), first, last, ...reach);
+      }
+      if (limit && side === "left") reach = this.#withLimit(picture.column(limit.channel), first, last, reach);
+      range.follow(...reach, now);
+    }
+  }
+
+  #withLimit(limits, first, last, [low, high]) {
+    const [smallest, largest] = extent(limits, first, last);
+    this.#limitIsNear = Math.max(-low, high) > this.layout.limit.near * smallest;
+    return this.#limitIsNear ? [Math.min(low, -largest), Math.max(high, largest)] : [low, high];
+  }
+
+  #compare(picture, series, first, last) {
+    const one = picture.column(series.channel);
+    const other = picture.column(series.onlyWhenUnlike);
+    const limit = 1e-3 * (this.ranges[series.side].max - this.ranges[series.side].min);
+    let i = first;
+    while (i <= last && !(Math.abs(one[i] - other[i]) > limit)) i += 1;
+    if (i <= last) this.#unlike.add(series.channel);
+    else this.#unlike.delete(series.channel);
+  }
+
+  #wheel(event) {
+    const area = this.plot.over.getBoundingClientRect();
+    const side = event.clientX < area.left ? "left" : event.clientX > area.right ? "right" : null;
+    const range = side && this.ranges[side];
+    if (!range) return;
+    event.preventDefault();
+    const about = this.plot.posToVal(event.clientY - area.top, side);
+    range.scale(about, event.deltaY > 0 ? 1.15 : 1 / 1.15);
+    this.stack.redraw();
+  }
+
+  #click(event) {
+    if (Math.abs(event.clientX - this.pressedAt) > 3) return;
+    this.stack.cursors.set(this.plot.posToVal(event.clientX - this.plot.over.getBoundingClientRect().left, "x"));
+  }
+
+  #options(width, height) {
+    const { palette, timeWindow, cursors, marks } = this.stack;
+    const range = (side) => ({ auto: true, range: () => [this.ranges[side].min, this.ranges[side].max] });
+    return {
+      width,
+      height,
+      legend: { show: false },
+      padding: [4, this.layout.right ? 0 : RIGHT_PX, this.hasTimeAxis ? 0 : 4, 0],
+      scales: { x: { time: false, range: (_, min, max) => [min, max] }, left: range("left"), ...(this.ranges.right ? { right: range("right") } : {}) },
+      axes: this.#axes(),
+      series: [{}, ...this.series.map((series) => this.#line(series)), ...(this.layout.limit ? [this.#limitLine(1), this.#limitLine(-1)] : [])],
+      cursor: {
+        y: false,
+        points: { size: 6, width: 0 },
+        drag: { x: true, y: false, setScale: false },
+        sync: { key: "time", scales: ["x", null] },
+        bind: { dblclick: () => () => this.stack.followAgain() },
+      },
+      hooks: {
+        setSelect: [(plot) => this.#selected(plot)],
+        setCursor: [(plot) => this.stack.pointAt(this, plot)],
+        draw: [
+          (plot) => {
+            EventMarks.draw(plot, timeWindow.marksShown, palette);
+            cursors.draw(plot, palette, this.isTop);
+          },
+        ],
+      },
+    };
+  }
+
+  #selected(plot) {
+    const { left, width } = plot.select;
+    if (width < 4) return;
+    const [from, to] = [plot.posToVal(left, "x"), plot.posToVal(left + width, "x")];
+    plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+    this.stack.timeWindow.zoom(from, to);
+  }
+
+  #line({ channel, colour, dash, side, isFaint, isHidden, onlyWhenUnlike }) {
+    const { palette } = this.stack;
+    return {
+      scale: side,
+      auto: false,
+      show: !isHidden,
+      width: isFaint ? 1 : 1.5,
+      stroke: () => (isFaint ? palette.faint(`series-${colour}`, 0.45) : palette.colour(`series-${colour}`)),
+      dash,
+      paths: linePath({ isShown: onlyWhenUnlike ? () => this.#unlike.has(channel) : undefined }),
+      points: { show: false },
+    };
+  }
+
+  #limitLine(sign) {
+    return {
+      scale: "left",
+      auto: false,
+      width: 1,
+      stroke: () => this.stack.palette.colour("limit-line"),
+      dash: [2, 3],
+      paths: linePath({ sign, isShown: () => this.#limitIsNear }),
+      points: { show: false },
+    };
+  }
+
+  #axes() {
+    const { palette } = this.stack;
+    const base = {
+      font: FONT,
+      stroke: () => palette.colour("axis-text"),
+      grid: { stroke: () => palette.colour("grid"), width: 1 },
+      ticks: { show: false },
+      gap: 6,
+    };
+    const time = {
+      ...base,
+      size: this.hasTimeAxis ? TIME_AXIS_PX : 0,
+      splits: (plot, _, min, max) => niceTicks(min, max, Math.max(2, Math.min(8, plot.bbox.width / devicePixelRatio / 90))),
+      values: (_, ticks) => (this.hasTimeAxis ? tickTexts(ticks).map((text) => `${text} s`) : ticks.map(() => "")),
+    };
+    return [time, this.#yAxis(base, "left", 3, LEFT_PX), ...(this.ranges.right ? [this.#yAxis(base, "right", 1, RIGHT_PX)] : [])];
+  }
+
+  #yAxis(base, side, uplotSide, size) {
+    return {
+      ...base,
+      scale: side,
+      side: uplotSide,
+      size,
+      grid: { ...base.grid, show: side === "left" },
+      splits: (plot, _, min, max) => niceTicks(min, max, Math.max(2, Math.floor(plot.bbox.height / devicePixelRatio / TICK_EVERY_PX))),
+      values: (_, ticks) => tickTexts(ticks, this.layout[side].factor),
+    };
+  }
+}

@@ -1,0 +1,64 @@
+import { element } from "../element.js";
+import { fixed } from "../quantity.js";
+
+const KINDS = { disturbance: "series-disturbance", tuning: "dim", stiffness: "series-stiffness", reference: "dim", limit: "warning", fault: "fault", state: "dim" };
+const MARKS_KEPT = 500;
+const REACH_PX = 5;
+
+/** Thin vertical lines where something happened, with its word under the pointer. */
+export class EventMarks {
+  constructor(session) {
+    this.list = [];
+    this.tip = element("div", { class: "mark-tip", hidden: true });
+    document.body.append(this.tip);
+    session.addEventListener("log", ({ detail }) => this.#add(detail, session));
+    session.store.addEventListener("cleared", () => (this.list = []));
+  }
+
+  #add(events, session) {
+    const newest = Math.max(...events.map((event) => event.epoch ?? 0), session.store.epoch ?? 0, this.epoch ?? 0);
+    this.epoch = newest;
+    const marks = events
+      .filter((event) => KINDS[event.kind] && event.time_s !== null)
+      .map((event) => ({ time: event.time_s, text: event.text, epoch: event.epoch, colour: KINDS[event.kind], by: event.by === session.you ? "you" : event.by }));
+    this.list = [...this.list, ...marks].filter((mark) => mark.epoch === newest).slice(-MARKS_KEPT);
+  }
+
+  /** Draw the marks of the shown span into a chart. */
+  static draw(plot, marks, palette) {
+    const { ctx, bbox } = plot;
+    const [from, to] = [plot.scales.x.min, plot.scales.x.max];
+    let drawn = -Infinity;
+    ctx.save();
+    ctx.lineWidth = devicePixelRatio;
+    ctx.setLineDash([3 * devicePixelRatio, 3 * devicePixelRatio]);
+    for (const mark of marks) {
+      const x = Math.round(plot.valToPos(mark.time, "x", true)) + 0.5;
+      if (mark.time < from || mark.time > to || Math.abs(x - drawn) < 2) continue;
+      drawn = x;
+      ctx.strokeStyle = palette.faint(mark.colour, 0.75);
+      ctx.beginPath();
+      ctx.moveTo(x, bbox.top);
+      ctx.lineTo(x, bbox.top + bbox.height);
+      ctx.stroke();
+    }
+    ctx.restore();
+  }
+
+  /** Show the words of the marks near a pointer position, in CSS px from the chart's left. */
+  point(plot, left, marks) {
+    const near = left < 0 ? [] : marks.filter((mark) => Math.abs(plot.valToPos(mark.time, "x") - left) <= REACH_PX);
+    this.tip.hidden = near.length === 0;
+    if (!near.length) return;
+    const shown = near.slice(-4).map((mark) => element("p", {}, `${mark.text} · ${fixed(mark.time, 2)} s${mark.by ? ` · ${mark.by}` : ""}`));
+    this.tip.replaceChildren(...shown);
+    const area = plot.over.getBoundingClientRect();
+    const width = this.tip.offsetWidth;
+    this.tip.style.left = `${Math.min(area.left + left + 8, innerWidth - width - 8)}px`;
+    this.tip.style.top = `${area.top + 2}px`;
+  }
+
+  leave() {
+    this.tip.hidden = true;
+  }
+}

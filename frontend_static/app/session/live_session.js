@@ -1,0 +1,91 @@
+import { LiveConnection } from "./live_connection.js";
+import { TelemetryFrame } from "./telemetry_frame.js";
+import { TelemetryStore } from "./telemetry_store.js";
+import { ScenarioDocument } from "../document/scenario_document.js";
+
+const EVENTS_KEPT = 300;
+const STALE_S = 1; // a snapshot may be half a second old
+
+/**
+ * The page's one picture of the session: snapshot, document, events and telemetry, all as the server said them.
+ *
+ * Events: `snapshot`, `hello`, `log` (the list of events changed), `connection` (open or lost), `presets`, and those of
+ * `document` and `store`.
+ */
+export class LiveSession extends EventTarget {
+  /** @param {string[]} channels names of the channels to keep @param {() => number} historySeconds */
+  constructor(channels, historySeconds) {
+    super();
+    this.store = new TelemetryStore(channels);
+    this.document = new ScenarioDocument();
+    this.connection = new LiveConnection(historySeconds);
+    this.snapshot = null;
+    this.events = [];
+    this.channels = new Map();
+    this.you = "";
+    this.loss = null;
+    this.connection.addEventListener("message", ({ detail }) => this.#take(detail));
+    this.connection.addEventListener("frame", ({ detail }) => this.store.accept(new TelemetryFrame(detail)));
+    this.connection.addEventListener("lost", ({ detail }) => this.#connectionIs(detail));
+    this.connection.addEventListener("retrying", () => this.#connectionIs(this.loss && { ...this.loss, retryAt: null }));
+    this.connection.addEventListener("open", () => this.#connectionIs(null));
+  }
+
+  get isConnected() {
+    return this.connection.isOpen;
+  }
+
+  start() {
+    this.connection.open();
+  }
+
+  command(name, args) {
+    return this.connection.command(name, args);
+  }
+
+  /** Add a line to the log that only this page knows of, such as a refused command. */
+  note(text, severity = "warning") {
+    this.#log([{ number: null, wall_time: new Date().toISOString(), epoch: null, time_s: null, kind: "page", text, by: this.you, severity }]);
+  }
+
+  #connectionIs(loss) {
+    this.loss = loss;
+    this.dispatchEvent(new Event("connection"));
+  }
+
+  #take(message) {
+    if (message.type === "hello") this.#greet(message);
+    else if (message.type === "state") this.#show(message.snapshot);
+    else if (message.type === "document") this.document.accept(message);
+    else if (message.type === "event") this.#log([message.event]);
+    else if (message.type === "missed") this.note(`${message.samples} samples missed: this page was too slow`);
+  }
+
+  #greet(hello) {
+    const { epoch, time_s } = hello.snapshot;
+    const wentBack = epoch < this.store.epoch || (epoch === this.store.epoch && time_s < this.store.lastTime - STALE_S);
+    if (this.store.epoch !== null && wentBack) this.store.clear({ restarted: true });
+    this.you = hello.you;
+    this.channels = new Map(hello.channels.map((channel) => [channel.name, channel]));
+    this.store.readChannels(hello.channels);
+    this.events = wentBack ? [] : this.events;
+    this.dispatchEvent(new Event("hello"));
+    if (hello.document) this.document.accept(hello.document);
+    this.#log(hello.events);
+    this.#show(hello.snapshot);
+  }
+
+  #show(snapshot) {
+    this.snapshot = snapshot;
+    this.dispatchEvent(new Event("snapshot"));
+  }
+
+  #log(events) {
+    const known = new Set(this.events.map((event) => event.number).filter((number) => number !== null));
+    const fresh = events.filter((event) => event.number === null || !known.has(event.number));
+    if (!fresh.length) return;
+    this.events = [...this.events, ...fresh].slice(-EVENTS_KEPT);
+    this.dispatchEvent(new CustomEvent("log", { detail: fresh }));
+    if (fresh.some((event) => event.kind === "preset")) this.dispatchEvent(new Event("presets"));
+  }
+}

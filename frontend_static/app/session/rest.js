@@ -1,0 +1,22 @@
+import { Refusal } from "./refusal.js";
+
+const TIME_LIMIT_MS = 8000;
+
+/** One REST call. @returns {Promise<any>} the answer's JSON @throws {Refusal} with the server's problem, or why there is none */
+export async function rest(method, path, body) {
+  let response;
+  try {
+    response = await fetch(path, {
+      method,
+      headers: body === undefined ? {} : { "content-type": "application/json" },
+      body: body === undefined ? undefined : JSON.stringify(body),
+      signal: AbortSignal.timeout(TIME_LIMIT_MS),
+    });
+  } catch (error) {
+    const why = error.name === "TimeoutError" ? `no answer within ${TIME_LIMIT_MS / 1000} s` : "the server cannot be reached";
+    throw new Refusal({ title: "No answer", detail: `${method} ${path}: ${why}.` });
+  }
+  const answer = await response.json().catch(() => null);
+  if (!response.ok) throw new Refusal(answer?.detail ? answer : { detail: `${method} ${path} answered ${response.status}.` });
+  return answer;
+}
