@@ -13,6 +13,9 @@ from vssea_core.fields import Part, parameter
 from vssea_core.signals.documents import ConstantStiffness, Disturbances, Reference, SineReference, StiffnessReference
 
 
+MAX_SAMPLES = 200_000
+
+
 class Initial(Part):
     """The actuator starts at rest, in equilibrium under the disturbances that act at t = 0."""
 
@@ -38,6 +41,12 @@ class Scenario(Part):
     def _parts_fit(self) -> Self:
         check_observer_fits(self.tuning, self.sensors)
         check_stiffness_fits(self.stiffness_reference, self.actuator)
+        samples = self.duration_s / self.timing.sample_time_s
+        if samples > MAX_SAMPLES:
+            raise ValueError(
+                f"duration_s {self.duration_s:g} s is {samples:.0f} samples of {self.timing.sample_time_s:g} s; "
+                f"expected at most {MAX_SAMPLES}, so shorten it or lengthen timing.sample_time_s"
+            )
         return self
 
 

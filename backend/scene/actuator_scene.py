@@ -96,7 +96,7 @@ class ActuatorScene:
         scene.configure_default_lights(False)
         scene.configure_environment_map(None)
         # Mostly even light, as the colours carry meaning; the rest gives form.
-        scene.add_light_ambient("/light/even", intensity=2.0)
+        scene.add_light_ambient("/light/even", intensity=2.15)
         scene.add_light_directional("/light/key", intensity=1.1, position=(-1.5, 3.0, 4.0))
         scene.add_light_directional("/light/side", intensity=0.35, position=(4.0, 0.5, 2.0))
         camera.position = CAMERA_POSITION

@@ -11,7 +11,7 @@ import numpy as np
 
 from backend.scene.solids import Vertices, ribbon, turned
 
-MAGNIFICATION: Final = 5.0
+MAGNIFICATION: Final = 8.0
 """How many times larger than real the deflection is drawn; the scene says so in its corner."""
 LARGEST_SHOWN_DEFLECTION: Final = 0.6
 """Drawn deflections level off towards this angle [rad], so that a soft joint under load does not fold up."""
@@ -44,7 +44,7 @@ ARROW_STATIONS: Final = 15
 
 
 def magnified(deflection: float) -> float:
-    """The angle [rad] drawn for a deflection theta_e - theta_l [rad]: `MAGNIFICATION` times it, levelling off smoothly."""
+    """The angle [rad] drawn for a deflection theta_e - theta_l [rad]: `MAGNIFICATION` times it, levelling off."""
     return LARGEST_SHOWN_DEFLECTION * math.tanh(MAGNIFICATION * deflection / LARGEST_SHOWN_DEFLECTION)
 
 
@@ -62,8 +62,8 @@ def roller_radius(length: float) -> float:
 def leaf_vertices(shown_deflection: float, length: float) -> Vertices:
     """Corners (8 `LEAF_STATIONS`, 3) of the leaf along +x of the link's frame.
 
-    A cantilever clamped at the hub and loaded at the roller: w = w_L (3 u^2 - u^3) / 2 with u = x / L. The roller's end is
-    seen from the joint axis at `shown_deflection`, the angle (already magnified) by which the motor is ahead of the link;
+    A cantilever clamped at the hub and loaded at the roller: w = w_L (3 u^2 - u^3) / 2 with u = x / L. The roller's end
+    is seen from the joint axis at `shown_deflection`, the (magnified) angle by which the motor is ahead of the link;
     past the roller nothing loads the leaf, and it goes on straight. `length` is the free length in scene units.
     """
     contact_x = roller_radius(length) * math.cos(shown_deflection)
@@ -91,7 +91,7 @@ def all_leaves(shown_deflection: float, length: float) -> Vertices:
 def arrow_span(torque: float) -> float:
     """Signed angle [rad] that the arrow of a link disturbance [N m] covers; 0 when it is too small to be shown.
 
-    A positive disturbance takes torque from the link (J_l theta_l'' = tau_s - b_l theta_l' - tau_d): it pushes clockwise.
+    A positive disturbance pushes clockwise, as J_l theta_l'' = tau_s - b_l theta_l' - tau_d.
     """
     if not abs(torque) >= SMALLEST_SHOWN_TORQUE:
         return 0.0
@@ -99,7 +99,7 @@ def arrow_span(torque: float) -> float:
 
 
 def arrow_vertices(span: float) -> Vertices:
-    """Corners (8 (`ARROW_STATIONS` + 2), 3) of an arc arrow in the link's frame, from the bar's side over `span` [rad]."""
+    """Corners (8 (`ARROW_STATIONS` + 2), 3) of an arc arrow in the link's frame, beside the bar, over `span` [rad]."""
     head = min(0.21, 0.6 * abs(span))
     shaft = np.linspace(0.0, abs(span) - head, ARROW_STATIONS)
     angle = math.copysign(1.0, span) * (ARROW_START + np.append(shaft, [shaft[-1], abs(span)]))

@@ -67,7 +67,7 @@ def _preface(theme: Theme) -> str:
     folder = files("backend.scene")
     style = folder.joinpath("preface.css").read_text(encoding="utf-8")
     script = folder.joinpath("preface.js").read_text(encoding="utf-8")
-    settings = {"exchange": exchange(theme), "note": f"bending × {MAGNIFICATION:g}"}
+    settings = {"exchange": exchange(theme), "note": f"bending \N{MULTIPLICATION SIGN} {MAGNIFICATION:g}"}
     colours = f":root{{--middle:{middle};--rim:{rim};--text:{text};color-scheme:{theme}}}"
     return (
         f"<style>{colours}{style}</style>"

@@ -32,7 +32,7 @@ LIGHT: Final[dict[str, str]] = {
     "hub": "#8793a3",
     "roller": "#5d6977",
     "body": "#c3ccd6",
-    "floor": "#e9edf2",
+    "floor": "#f7f9fb",
 }
 
 

@@ -1,14 +1,16 @@
 """The scene process, and its keeper in the web process.
 
-viser runs on its own, as its bursts of work must never delay the web process, through which STOP passes. The two share one
-pipe: the port travels over it, and its end tells the scene to leave. Poses come from the telemetry ring.
+viser runs on its own, as its bursts of work must never delay the web process, through which STOP passes. The two share
+a pipe: the port travels over it, and its end tells the scene to leave. Poses come from the telemetry ring.
 """
 
 import asyncio
+import io
 import logging
 import multiprocessing
 import os
 import signal
+import sys
 import time
 from collections.abc import Callable
 from multiprocessing.connection import Connection
@@ -37,6 +39,7 @@ def run_scene(ring_name: str, port_sender: Connection) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is the keeper's to handle
     if hasattr(os, "nice"):
         os.nice(5)  # pictures give way to the control loop
+    sys.stdout = io.StringIO()  # viser prints a banner, with an address that is not for visitors
     import viser
 
     from backend.scene.actuator_scene import ActuatorScene

@@ -1,7 +1,7 @@
 """Meshes of plain bodies: turned about the joint axis (z), cut from a plate, or bent ribbons.
 
-Every function answers `(vertices, faces)`: (n, 3) float32 positions in scene units (the link is about 1 long) and (m, 3)
-uint32 corner numbers, counter-clockwise seen from outside.
+A mesh is `(vertices, faces)`: (n, 3) float32 positions in scene units (the link is about 1 long) and (m, 3) uint32
+corner numbers, counter-clockwise seen from outside.
 """
 
 from collections.abc import Sequence
@@ -88,12 +88,14 @@ def ribbon(left: NDArray[np.float64], right: NDArray[np.float64], z_low: float, 
 
 
 def ribbon_faces(stations: int) -> Faces:
-    """Faces of a `ribbon` with that many stations."""
+    """Faces of a `ribbon` with that many stations, with both ends closed."""
     here = np.arange(stations - 1)
-    quads = []
+    start = 2 * stations * np.arange(4)
+    end = start + stations - 1
+    quads = [start[[[0, 1, 2], [0, 2, 3]]], end[[[0, 2, 1], [0, 3, 2]]]]
     for side in range(4):
         near, far = 2 * side * stations + here, (2 * side + 1) * stations + here
-        quads += [np.stack([near, far, far + 1], axis=1), np.stack([near, far + 1, near + 1], axis=1)]
+        quads += [np.stack([near, far + 1, far], axis=1), np.stack([near, near + 1, far + 1], axis=1)]
     return np.concatenate(quads).astype(np.uint32)
 
 

@@ -43,11 +43,11 @@ def health(state):  # type: ignore[no-untyped-def]
 
 
 @entry
-def run(rig_row, before, prepared, reference, slew_row, link_terms, motor_terms, enabled, tuning_id, state, first, count, every, rows):  # type: ignore[no-untyped-def]
+def run(rig_row, before, prepared, reference, slew_row, link_terms, motor_terms, enabled, tuning_id, state, first, count, rows):  # type: ignore[no-untyped-def]
     """Advance `state` in place by `count` samples from sample `first`; return how many went well, and why it ended.
 
-    Every `every`-th sample is written to `rows` (columns of channels.CHANNELS). `before` is the tuning in force until
-    `first`, `prepared` from then on. With `enabled` 0 the motor's torque is zero and the stiffness axis still holds.
+    Each sample is written to a row of `rows` (columns of channels.CHANNELS). `before` is the tuning in force until `first`,
+    `prepared` from then on. With `enabled` 0 the motor's torque is zero and the stiffness axis still holds.
     """
     rig = loaded_rig(rig_row)
     plant, drives = rig.plant, rig.drives
@@ -89,48 +89,47 @@ def run(rig_row, before, prepared, reference, slew_row, link_terms, motor_terms,
         else:
             applied_e, applied_ms = torque, stiffness_torque
 
-        if i % every == 0:
-            deflection = now.theta_e - now.theta_l
-            spring = leaf(deflection, now.theta_ms)
-            tau_s = plant.spring_constant * spring.torque
-            k = plant.spring_constant * spring.stiffness
-            bits |= stiffness_bits
-            if abs(tau_s * tau_s * tau_s) > drives.leaf_cube * abs(k):
-                bits |= LEAF_TORQUE
-            if rate_limited:
-                bits |= STIFFNESS_RATE
-            if now.theta_ms <= plant.theta_ms_stiff or now.theta_ms >= plant.theta_ms_soft:
-                bits |= END_STOP
-            row = rows[i // every]
-            row[0] = time
-            row[1] = target.r
-            row[2] = now.theta_l
-            row[3] = now.theta_e
-            row[4] = target.r - now.theta_l
-            row[5] = now.omega_l
-            row[6] = now.omega_e
-            row[7] = terms.e2
-            row[8] = terms.e3
-            row[9] = terms.e4
-            row[10] = terms.sigma
-            row[11] = terms.snap
-            row[12] = demanded
-            row[13] = applied_e
-            row[14] = available
-            row[15] = tau_s
-            row[16] = load(link_terms, time, time)
-            row[17] = tuning.law.link_inertia * memory.link.d
-            row[18] = load(motor_terms, time, time) + dry_friction(plant, now.omega_e)
-            row[19] = tuning.law.motor_inertia * memory.motor.d
-            row[20] = tuning.law.link_inertia * memory.link.d1
-            row[21] = k
-            row[22] = slew.spring_constant / (2.0 * stiffness_target.r**3)
-            row[23] = deflection
-            row[24] = now.theta_ms
-            row[25] = now.omega_ms
-            row[26] = applied_ms
-            row[27] = bits
-            row[28] = tuning_id
+        deflection = now.theta_e - now.theta_l
+        spring = leaf(deflection, now.theta_ms)
+        tau_s = plant.spring_constant * spring.torque
+        k = plant.spring_constant * spring.stiffness
+        bits |= stiffness_bits
+        if abs(tau_s * tau_s * tau_s) > drives.leaf_cube * abs(k):
+            bits |= LEAF_TORQUE
+        if rate_limited:
+            bits |= STIFFNESS_RATE
+        if now.theta_ms <= plant.theta_ms_stiff or now.theta_ms >= plant.theta_ms_soft:
+            bits |= END_STOP
+        row = rows[i]
+        row[0] = time
+        row[1] = target.r
+        row[2] = now.theta_l
+        row[3] = now.theta_e
+        row[4] = target.r - now.theta_l
+        row[5] = now.omega_l
+        row[6] = now.omega_e
+        row[7] = terms.e2
+        row[8] = terms.e3
+        row[9] = terms.e4
+        row[10] = terms.sigma
+        row[11] = terms.snap
+        row[12] = demanded
+        row[13] = applied_e
+        row[14] = available
+        row[15] = tau_s
+        row[16] = load(link_terms, time, time)
+        row[17] = tuning.law.link_inertia * memory.link.d
+        row[18] = load(motor_terms, time, time) + dry_friction(plant, now.omega_e)
+        row[19] = tuning.law.motor_inertia * memory.motor.d
+        row[20] = tuning.law.link_inertia * memory.link.d1
+        row[21] = k
+        row[22] = slew.spring_constant / (2.0 * stiffness_target.r**3)
+        row[23] = deflection
+        row[24] = now.theta_ms
+        row[25] = now.omega_ms
+        row[26] = applied_ms
+        row[27] = bits
+        row[28] = tuning_id
 
         heat = warmed(drives, heat, applied_e, applied_ms)
         following = advance_plant(

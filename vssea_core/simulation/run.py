@@ -18,19 +18,17 @@ ENDINGS = {
 }
 
 
-def simulate(scenario: Scenario, every: int = 1) -> Trajectory:
-    """Return the trajectory of `scenario`, recording every `every`-th sample.
+def simulate(scenario: Scenario) -> Trajectory:
+    """Return the trajectory of `scenario`, every sample.
 
     A diverging run is not an error: it ends early and the trajectory's `ending` says why. Raises ValueError if the
-    scenario cannot start (see equilibrium_state) or `every` is not a positive whole number.
+    scenario cannot start (see equilibrium_state).
     """
-    if every < 1:
-        raise ValueError(f"every is {every}; expected 1 (all samples) or more")
     period = scenario.timing.sample_time_s
     count = max(1, round(scenario.duration_s / period))
     inputs = inputs_of(scenario)
     prepared = prepare(scenario.tuning, period)
-    rows = np.empty((-(-count // every), len(CHANNELS)))
+    rows = np.empty((count, len(CHANNELS)))
     done, end = run(
         inputs.rig,
         prepared,
@@ -44,9 +42,8 @@ def simulate(scenario: Scenario, every: int = 1) -> Trajectory:
         equilibrium_state(scenario),
         0,
         count,
-        every,
         rows,
     )
-    kept = rows if end == RUNNING else rows[: done // every + 1]
+    kept = rows if end == RUNNING else rows[: done + 1]
     ending = None if end == RUNNING else f"stopped at t = {done * period:.3f} s: {ENDINGS[end]}"
-    return Trajectory(kept, period * every, ending)
+    return Trajectory(kept, period, ending)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from vssea_core.actuator.drive import Drives, Heat
 from vssea_core.actuator.dynamics import LagShares, Plant, PlantState, lag_shares
-from vssea_core.actuator.parameters import Actuator
+from vssea_core.actuator.parameters import Actuator, Timing
 from vssea_core.actuator.sensors import Encoders, encoders
 from vssea_core.actuator.spring import equilibrium_deflection, stiffness_motor_position
 from vssea_core.compiled import inlined
@@ -94,21 +94,31 @@ def drive_numbers(actuator: Actuator, sample_time_s: float) -> Drives:
     )
 
 
-def rig_row(scenario: Scenario) -> Numbers:
-    """Return the simulated rig of `scenario` as one array, in the order of Rig."""
-    period = scenario.timing.sample_time_s
-    motor = scenario.actuator.motor
-    plant = plant_numbers(scenario.actuator, period)
+def rig_numbers(plant: Plant, drives: Drives, resolution: Encoders, lag_s: float, timing: Timing) -> Numbers:
+    """Return a simulated rig as one array, in the order of Rig."""
+    period, inertia = timing.sample_time_s, 1.0 / plant.per_motor_inertia
     return np.array(
         [
             *plant,
-            *lag_shares(motor.torque_lag_s, motor.inertia, period),
-            *lag_shares(motor.torque_lag_s, motor.inertia, period / plant.substeps),
-            *drive_numbers(scenario.actuator, period),
-            *encoders(scenario.sensors, motor),
+            *lag_shares(lag_s, inertia, period),
+            *lag_shares(lag_s, inertia, period / plant.substeps),
+            *drives,
+            *resolution,
             period,
-            float(scenario.timing.compute_delay_samples),
+            float(timing.compute_delay_samples),
         ]
+    )
+
+
+def rig_row(scenario: Scenario) -> Numbers:
+    """Return the simulated rig of `scenario` as one array, in the order of Rig."""
+    actuator, period = scenario.actuator, scenario.timing.sample_time_s
+    return rig_numbers(
+        plant_numbers(actuator, period),
+        drive_numbers(actuator, period),
+        encoders(scenario.sensors, actuator.motor),
+        actuator.motor.torque_lag_s,
+        scenario.timing,
     )
 
 

@@ -12,6 +12,7 @@ export class Baseline extends EventTarget {
     super();
     this.document = document;
     document.addEventListener("change", () => this.#fetchLoaded());
+    this.#fetchLoaded();
   }
 
   /** @returns {string} name of what the tuning is compared with, "" if there is nothing */

@@ -2,6 +2,13 @@ import { element } from "../element.js";
 
 const KEY = "vssea.collapsed";
 
+/** A short area of a title and lines of controls beside it. */
+export class LinePanel {
+  constructor({ id, title }, ...lines) {
+    this.root = element("section", { class: "line-panel", id: `panel-${id}`, "aria-label": title }, element("h2", {}, title), ...lines);
+  }
+}
+
 /** A titled, collapsible area of the parameter column. */
 export class Panel {
   constructor({ id, title, hint, isCollapsed = false }) {

@@ -1,7 +1,7 @@
 import { element, setText } from "../element.js";
 import { inputText } from "../quantity.js";
 import { rest } from "../session/rest.js";
-import { Panel } from "./panel.js";
+import { LinePanel } from "./panel.js";
 
 /** Saved tunings: save, apply, delete, and what was changed since. */
 export class PresetPanel {
@@ -9,28 +9,22 @@ export class PresetPanel {
 
   constructor(layout, desk) {
     this.desk = desk;
-    this.panel = new Panel(layout);
-    this.root = this.panel.root;
     this.name = element("input", { type: "text", "aria-label": "Preset name", placeholder: "name of this tuning", maxlength: 80, autocomplete: "off", spellcheck: "false" });
     this.name.addEventListener("keydown", (event) => event.key === "Enter" && this.save());
     this.saveButton = element("button", { type: "button", title: "Save the tuning in force under this name (Ctrl+S)", click: () => this.save() }, "Save");
-    this.select = element("select", { "aria-label": "Saved presets", change: () => this.#enable() });
+    this.select = element("select", { "aria-label": "Saved presets" });
     this.applyButton = element("button", { type: "button", click: () => this.#apply() }, "Apply");
     this.deleteButton = element("button", { type: "button", class: "quiet", click: () => this.#delete() }, "Delete");
     this.changes = element("p", { class: "preset-changes", hidden: true });
-    this.panel.body.append(
-      element("div", { class: "line" }, this.name, this.saveButton),
-      element("div", { class: "line" }, this.select, this.applyButton, this.deleteButton),
-      this.changes,
-    );
+    this.saved = element("div", { class: "line", hidden: true }, this.select, this.applyButton, this.deleteButton);
+    this.root = new LinePanel(layout, element("div", { class: "line" }, this.name, this.saveButton), this.saved, this.changes).root;
     desk.session.addEventListener("hello", () => this.#fetch());
     desk.session.addEventListener("presets", () => this.#fetch());
-    this.#list();
+    this.#fetch();
   }
 
   echo() {
     const { preset } = this.desk.document;
-    setText(this.panel.aside, preset?.name ?? "");
     if (preset && !this.name.value && document.activeElement !== this.name) this.name.value = preset.name;
     this.#sayChanges();
   }
@@ -38,10 +32,7 @@ export class PresetPanel {
   /** Save under the name in the box; without one, ask for it. */
   async save() {
     const name = this.name.value.trim();
-    if (!name) {
-      this.root.open = true;
-      return this.name.focus();
-    }
+    if (!name) return this.name.focus();
     await this.#command("save_preset", { name });
   }
 
@@ -79,14 +70,8 @@ export class PresetPanel {
 
   #list() {
     const chosen = this.select.value || this.desk.document.preset?.name;
-    const options = this.#presets.map(({ name }) => new Option(name, name, false, name === chosen));
-    this.select.replaceChildren(...(options.length ? options : [new Option("none saved yet", "")]));
-    this.#enable();
-  }
-
-  #enable() {
-    const isChosen = this.select.value !== "";
-    this.applyButton.disabled = this.deleteButton.disabled = this.select.disabled = !isChosen;
+    this.select.replaceChildren(...this.#presets.map(({ name }) => new Option(name, name, false, name === chosen)));
+    this.saved.hidden = this.#presets.length === 0;
   }
 
   #sayChanges() {

@@ -1,6 +1,6 @@
-import { element, setText } from "../element.js";
+import { element } from "../element.js";
 import { rest } from "../session/rest.js";
-import { Panel } from "./panel.js";
+import { LinePanel } from "./panel.js";
 
 /** Which ready scenario runs; choosing one loads it and starts again at t = 0. */
 export class ScenarioPanel {
@@ -8,13 +8,11 @@ export class ScenarioPanel {
 
   constructor(layout, desk) {
     this.desk = desk;
-    this.panel = new Panel(layout);
-    this.root = this.panel.root;
     this.select = element("select", { "aria-label": "Scenario", change: () => this.#load() });
     const again = element("button", { type: "button", class: "quiet", title: "Load this scenario again, as it was written", click: () => this.#load() }, "Reload");
-    this.about = element("p", { class: "panel-hint", hidden: true });
-    this.panel.body.append(element("div", { class: "line" }, this.select, again), this.about);
+    this.root = new LinePanel(layout, element("div", { class: "line" }, this.select, again)).root;
     desk.session.addEventListener("hello", () => this.#fetch());
+    this.#fetch();
   }
 
   echo() {
@@ -22,9 +20,7 @@ export class ScenarioPanel {
     if (!name) return;
     if (![...this.select.options].some((option) => option.value === name)) this.select.append(new Option(name, name));
     this.select.value = name;
-    const about = this.#descriptions.get(name) ?? this.desk.document.value("description") ?? "";
-    setText(this.about, about);
-    this.about.hidden = about === "";
+    this.select.title = this.#descriptions.get(name) ?? this.desk.document.value("description") ?? "";
   }
 
   async #fetch() {

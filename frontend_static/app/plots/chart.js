@@ -9,7 +9,7 @@ import { YRange } from "./y_range.js";
 const LEFT_PX = 52;
 const RIGHT_PX = 44;
 const TIME_AXIS_PX = 22;
-const TICK_EVERY_PX = 26;
+const TICK_EVERY_PX = 17;
 const FONT = '11px system-ui, -apple-system, "Segoe UI", sans-serif';
 
 /** One of the stacked charts: legend strip, uPlot, and y scales that keep still. */
@@ -56,11 +56,10 @@ export class Chart {
   tell(picture, at) {
     const { cursors } = this.stack;
     for (const { item, series } of this.told) {
-      const { min, max } = this.ranges[series.side];
-      item.show(at < 0 ? NaN : picture.column(series.channel)[at], Math.max(Math.abs(min), Math.abs(max)), cursors.difference(series.channel));
+      item.show(at < 0 ? NaN : picture.column(series.channel)[at], this.ranges[series.side], cursors.difference(series.channel));
       if (series.onlyWhenUnlike) item.root.hidden = !this.#unlike.has(series.channel);
     }
-    if (this.limitItem) this.limitItem.show(at < 0 ? NaN : picture.column(this.layout.limit.channel)[at], 100, NaN);
+    if (this.limitItem) this.limitItem.show(at < 0 ? NaN : picture.column(this.layout.limit.channel)[at], { min: 0, max: 100 }, NaN);
     this.legend.scaleReset.hidden = !this.ranges.left.isManual && !this.ranges.right?.isManual;
   }
 
@@ -154,7 +153,7 @@ export class Chart {
       width,
       height,
       legend: { show: false },
-      padding: [4, this.layout.right ? 0 : RIGHT_PX, this.hasTimeAxis ? 0 : 4, 0],
+      padding: [6, this.layout.right ? 0 : RIGHT_PX, this.hasTimeAxis ? 0 : 5, 0],
       scales: { x: { time: false, range: (_, min, max) => [min, max] }, left: range("left"), ...(this.ranges.right ? { right: range("right") } : {}) },
       axes: this.#axes(),
       series: [{}, ...this.series.map((series) => this.#line(series)), ...(this.layout.limit ? [this.#limitLine(1), this.#limitLine(-1)] : [])],
@@ -186,13 +185,13 @@ export class Chart {
     this.stack.timeWindow.zoom(from, to);
   }
 
-  #line({ channel, colour, dash, side, isFaint, isHidden, onlyWhenUnlike }) {
+  #line({ channel, colour, dash, width, side, isFaint, isHidden, onlyWhenUnlike }) {
     const { palette } = this.stack;
     return {
       scale: side,
       auto: false,
       show: !isHidden,
-      width: isFaint ? 1 : 1.5,
+      width: width ?? (isFaint ? 1 : 1.5),
       stroke: () => (isFaint ? palette.faint(`series-${colour}`, 0.45) : palette.colour(`series-${colour}`)),
       dash,
       paths: linePath({ isShown: onlyWhenUnlike ? () => this.#unlike.has(channel) : undefined }),

@@ -35,10 +35,10 @@ export const CHARTS = [
     name: "Disturbance and its estimate",
     left: { unit: "N·m", smallest: 1 },
     series: [
-      { channel: "link_disturbance", label: "link disturbance", colour: "disturbance" },
-      { channel: "link_disturbance_estimate", label: "estimate", colour: "link" },
-      { channel: "motor_disturbance", label: "on motor", colour: "motor-disturbance", isHidden: true },
-      { channel: "motor_disturbance_estimate", label: "estimate", colour: "torque", isHidden: true },
+      { channel: "link_disturbance", label: "link disturbance", colour: "disturbance", width: 2.5 },
+      { channel: "link_disturbance_estimate", label: "estimate", colour: "link", width: 1.25 },
+      { channel: "motor_disturbance", colour: "motor-disturbance", width: 2.5, isHidden: true },
+      { channel: "motor_disturbance_estimate", colour: "torque", width: 1.25, isHidden: true },
     ],
   },
   {

@@ -12,7 +12,7 @@ export class EventMarks {
     this.tip = element("div", { class: "mark-tip", hidden: true });
     document.body.append(this.tip);
     session.addEventListener("log", ({ detail }) => this.#add(detail, session));
-    session.store.addEventListener("cleared", () => (this.list = []));
+    session.store.addEventListener("cleared", () => this.#forget(session.store.epoch));
   }
 
   #add(events, session) {
@@ -22,6 +22,12 @@ export class EventMarks {
       .filter((event) => KINDS[event.kind] && event.time_s !== null)
       .map((event) => ({ time: event.time_s, text: event.text, epoch: event.epoch, colour: KINDS[event.kind], by: event.by === session.you ? "you" : event.by }));
     this.list = [...this.list, ...marks].filter((mark) => mark.epoch === newest).slice(-MARKS_KEPT);
+  }
+
+  /** Events of a new epoch may be told before its first sample. */
+  #forget(epoch) {
+    this.list = this.list.filter((mark) => mark.epoch > epoch);
+    this.epoch = 0;
   }
 
   /** Draw the marks of the shown span into a chart. */

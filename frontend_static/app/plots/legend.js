@@ -35,13 +35,21 @@ class LegendItem {
     this.#mark();
   }
 
-  /** @param {number} value SI @param {number} magnitude largest value of the scale, SI @param {number} difference B - A, SI */
-  show(value, magnitude, difference) {
+  /** @param {number} value SI @param {{min: number, max: number}} range of the y scale, SI @param {number} difference B - A, SI */
+  show(value, { min, max }, difference) {
     const { factor } = this.entry;
-    const decimals = decimalsFor(magnitude * factor);
+    const magnitude = Math.max(Math.abs(min), Math.abs(max)) * factor;
+    const decimals = decimalsFor(magnitude);
+    this.#reserve(min < 0 ? `−${fixed(magnitude, decimals)}` : fixed(magnitude, decimals));
     setText(this.value, fixed(value * factor, decimals));
     this.delta.hidden = Number.isNaN(difference);
     setText(this.delta, Number.isNaN(difference) ? "" : `Δ ${fixed(difference * factor, decimals)}`);
+  }
+
+  /** Keep room for the longest value of the scale. */
+  #reserve(text) {
+    const width = `${text.length - 0.4 * (text.match(/[.−]/g)?.length ?? 0)}ch`;
+    if (this.value.style.minWidth !== width) this.value.style.minWidth = this.delta.style.minWidth = width;
   }
 
   #toggle() {

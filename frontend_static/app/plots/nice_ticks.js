@@ -19,5 +19,5 @@ export function niceTicks(low, high, count) {
 export function tickTexts(ticks, factor = 1) {
   const step = ticks.length > 1 ? Math.abs(ticks[1] - ticks[0]) * factor : Math.abs(ticks[0] ?? 1) * factor || 1;
   const decimals = Math.min(6, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
-  return ticks.map((tick) => (tick * factor).toFixed(decimals).replace(/^-(?=[0.]*$)/, "").replace("-", "−"));
+  return ticks.map((tick) => (tick === 0 ? "0" : (tick * factor).toFixed(decimals)).replace("-", "−"));
 }

@@ -17,6 +17,7 @@ export class PlotStack {
   #drawn = "";
   #isAsked = true;
   #toldAt = 0;
+  #isUntold = true;
   #pointer = null;
   #charts = [];
 
@@ -83,10 +84,13 @@ export class PlotStack {
     if (!this.#charts.length) return;
     const { timeWindow, cursors, session } = this;
     const state = `${timeWindow.isHeld ? "held" : session.store.version}/${timeWindow.version}/${cursors.version}`;
-    if (state === this.#drawn && !this.#isAsked) return;
-    this.#drawn = state;
-    this.#isAsked = false;
-    this.#draw(now);
+    if (state !== this.#drawn || this.#isAsked) {
+      this.#drawn = state;
+      this.#isAsked = false;
+      this.#isUntold = true;
+      this.#draw(now);
+    }
+    if (this.#isUntold && now - this.#toldAt >= LEGEND_PERIOD_MS) this.#tell(now);
   }
 
   #draw(now) {
@@ -95,15 +99,19 @@ export class PlotStack {
     const first = Math.max(0, firstAtOrAfter(times, range[0]) - 1);
     const last = Math.min(times.length - 1, firstAtOrAfter(times, range[1]));
     for (const chart of this.#charts) chart.draw(picture, first, last, range, now);
-    if (now - this.#toldAt < LEGEND_PERIOD_MS) return;
+  }
+
+  #tell(now) {
     this.#toldAt = now;
-    const at = this.#toldSample(times, last, range);
+    this.#isUntold = false;
+    const { picture, range } = this.timeWindow;
+    const at = this.#toldSample(picture.time, range);
     for (const chart of this.#charts) chart.tell(picture, at);
   }
 
   /** The sample whose values the legends show: under the pointer, else the newest shown. */
-  #toldSample(times, last, [from, to]) {
-    if (!this.#pointer) return last;
+  #toldSample(times, [from, to]) {
+    if (!this.#pointer) return Math.min(times.length - 1, firstAtOrAfter(times, to));
     const { plot, left } = this.#pointer;
     const time = from + (left / plot.over.clientWidth) * (to - from);
     return times.length ? Math.min(firstAtOrAfter(times, time), times.length - 1) : -1;

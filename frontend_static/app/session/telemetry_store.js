@@ -63,9 +63,11 @@ export class TelemetryStore extends EventTarget {
   /** Forget all samples; with `restarted` also where the sequence stood (another run of the server). */
   clear({ restarted = false } = {}) {
     this.#begin = this.#end = 0;
-    if (restarted) this.#nextSequence = null;
     this.version += 1;
     this.dispatchEvent(new Event("cleared"));
+    if (!restarted) return;
+    this.#nextSequence = null;
+    this.epoch = null;
   }
 
   /** Append what is new in a frame. @param {import("./telemetry_frame.js").TelemetryFrame} frame */

@@ -1,0 +1,1 @@
+"""The machine room: everything with a clock, a socket, a file or a wire."""

@@ -1,0 +1,1 @@
+"""The page: plain HTML, CSS and ES modules, found with `importlib.resources.files("frontend_static")`."""

@@ -1,0 +1,37 @@
+import { setText } from "../element.js";
+
+const WORDS = { starting: "Starting", ready: "Ready", running: "Running", paused: "Paused", stopped: "Stopped", fault: "Fault" };
+
+/** Rig mark, state dot, state word and sentence: what the session does, and why. */
+export class StateLine {
+  constructor(session) {
+    this.session = session;
+    this.rig = document.getElementById("rig");
+    this.line = document.getElementById("state");
+    this.word = document.getElementById("state-word");
+    this.rest = document.getElementById("state-sentence");
+    this.announcement = document.getElementById("announcement");
+    session.addEventListener("snapshot", () => this.#show());
+    session.addEventListener("connection", () => this.#show());
+  }
+
+  #show() {
+    const { snapshot, isConnected } = this.session;
+    if (!snapshot) return this.#say("connecting", "Connecting", "to the session");
+    setText(this.rig, snapshot.rig.label);
+    this.rig.dataset.kind = snapshot.rig.kind;
+    if (!isConnected) return this.#say("lost", "No connection", "what is shown is old");
+    const word = WORDS[snapshot.state] ?? snapshot.state;
+    const { sentence, reason } = snapshot;
+    const rest = sentence.toLowerCase().startsWith(word.toLowerCase()) ? sentence.slice(word.length).replace(/^[,:.\s]+/, "") : sentence;
+    this.#say(snapshot.state, word, reason && !sentence.includes(reason) ? `${rest}: ${reason}` : rest);
+  }
+
+  #say(state, word, rest) {
+    this.line.dataset.state = state;
+    this.line.title = `${word} ${rest}`;
+    setText(this.word, word);
+    setText(this.rest, rest);
+    setText(this.announcement, `${word} ${rest}`);
+  }
+}

@@ -1,0 +1,16 @@
+/** The views of the page, in the order of the navigation: each a tab in index.html and an element that it shows. */
+export class Views {
+  constructor() {
+    this.tabs = [...document.querySelectorAll('nav [role="tab"]')];
+    for (const tab of this.tabs) tab.addEventListener("click", () => this.show(tab.dataset.view));
+    this.show(this.tabs.find((tab) => `#${tab.dataset.view}` === location.hash)?.dataset.view ?? this.tabs[0].dataset.view);
+  }
+
+  show(view) {
+    for (const tab of this.tabs) {
+      const isShown = tab.dataset.view === view;
+      tab.setAttribute("aria-selected", String(isShown));
+      document.getElementById(tab.getAttribute("aria-controls")).hidden = !isShown;
+    }
+  }
+}
