@@ -1,5 +1,6 @@
 """The page at /scene/: viser's own client, with a preface that fits it into the dashboard."""
 
+import html
 import importlib.util
 import json
 from functools import cache
@@ -49,7 +50,7 @@ def waiting_page(theme: Theme, sentence: str) -> bytes:
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Scene</title>'
         f'<meta http-equiv="refresh" content="1"><style>html{{height:100%}}body{{margin:0;height:100%;display:grid;'
         f"place-items:center;color:{text};background:radial-gradient(circle at 45% 40%,{middle},{rim});"
-        f"font:12.5px system-ui,sans-serif;text-align:center}}</style></head><body><p>{sentence}</p></body></html>"
+        f"font:12.5px system-ui,sans-serif;text-align:center}}</style></head><body><p>{html.escape(sentence)}</p></body></html>"
     ).encode()
 
 

@@ -12,11 +12,21 @@
     const other = props?.color && exchange[Array.from(props.color).join(",")];
     if (other) props.color = other;
   };
+
+  // A picture that no longer follows the actuator must not look alive.
+  const alive = (yes) => {
+    document.documentElement.classList.toggle("lost", !yes);
+    const line = document.getElementById("scene-note");
+    if (line) line.textContent = yes ? note : "scene lost, connecting again";
+  };
+
   const NativeWorker = window.Worker;
   window.Worker = class extends NativeWorker {
     set onmessage(handler) {
       super.onmessage = (event) => {
-        if (event.data?.type === "message_batch") event.data.messages.forEach(recolour);
+        const { type, messages } = event.data;
+        if (type === "message_batch") messages.forEach(recolour);
+        if (type === "connected" || type === "closed") alive(type === "connected");
         handler(event);
       };
     }

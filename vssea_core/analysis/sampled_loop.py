@@ -16,19 +16,17 @@ from vssea_core.actuator.parameters import Timing
 from vssea_core.actuator.sensors import Encoders
 from vssea_core.actuator.spring import stiffness_motor_position
 from vssea_core.channels import CHANNELS
-from vssea_core.control.prepared import CHANNEL, prepare
+from vssea_core.control.prepared import prepare
 from vssea_core.control.tuning import ControllerModel, SlidingMode, Tuning
 from vssea_core.signals.references import reference_row
 from vssea_core.signals.documents import StepReference
 from vssea_core.signals.stiffness import SLEW_SIZE, Slew
 from vssea_core.simulation.kernel import run
-from vssea_core.simulation.state import APPLIED, MEMORY, PENDING, PLANT, SLEWED, SLEWED_SIZE, STATE_SIZE, rig_numbers
+from vssea_core.simulation.state import APPLIED, MEMORY, PENDING, SLEWED, SLEWED_SIZE, STATE_SIZE, rig_numbers
 
 Numbers = NDArray[np.float64]
 
 UNLIMITED = Drives(1e12, 1e12, 1e12, 1e12, 1e12, 1e12, 1e12, 0.0, 1e12)
-LINEARISED = (*range(PLANT), *range(APPLIED, APPLIED + 2), *range(PENDING, PENDING + 2), *range(MEMORY, MEMORY + 3 * CHANNEL + 2))
-"""Entries of the state that carry the loop: plant, torques under way, observers and the remembered spring."""
 STEP_OF_CHANNEL = (1e-5, 1e-3, 1e-1, 1e1, 1e3, 1e-5)
 STABLE_RADIUS = 1.0 - 1e-9
 
@@ -93,9 +91,10 @@ def closed_loop_matrix(
     rest[4] = theta_ms
     rest[SLEWED : SLEWED + SLEWED_SIZE] = theta_ms, theta_ms, 0.0, 0.0
     rest = after_one_sample(rest)
-    entries = np.array(LINEARISED)
+    sizes = _differences(theta_ms, bool(timing.compute_delay_samples))
+    entries = np.array(list(sizes))
     matrix = np.empty((len(entries), len(entries)))
-    for column, (entry, size) in enumerate(zip(entries, _steps(theta_ms), strict=True)):
+    for column, (entry, size) in enumerate(sizes.items()):
         ahead, behind = rest.copy(), rest.copy()
         ahead[entry] += size
         behind[entry] -= size
@@ -103,11 +102,19 @@ def closed_loop_matrix(
     return matrix
 
 
-def _steps(theta_ms: float) -> tuple[float, ...]:
-    """Return the difference taken in each entry: small against the spring's curvature, large against rounding."""
+def _differences(theta_ms: float, delayed: bool) -> dict[int, float]:
+    """Return the entries of the state that carry the loop, and the difference taken in each.
+
+    Plant, torques under way, observers and the remembered spring; differences small against the spring's curvature and
+    large against rounding.
+    """
     plant = (1e-5, 1e-3, 1e-5, 1e-3, 1e-4, 1e-2, 1e-2)
-    spring = (1e-5 / theta_ms**3, 1e-5 / theta_ms**4)
-    return (*plant, *(1e-2,) * 4, *STEP_OF_CHANNEL * 3, *spring)
+    controller = (*STEP_OF_CHANNEL * 3, 1e-5 / theta_ms**3, 1e-5 / theta_ms**4)
+    sizes = {entry: size for entry, size in enumerate(plant)}
+    sizes |= {APPLIED: 1e-2, APPLIED + 1: 1e-2}
+    if delayed:
+        sizes |= {PENDING: 1e-2, PENDING + 1: 1e-2}
+    return sizes | {MEMORY + place: size for place, size in enumerate(controller)}
 
 
 def stability(tuning: Tuning, timing: Timing, torque_lag_s: float, stiffness: float, plant: Plant | None = None) -> Stability:

@@ -1,29 +1,46 @@
 import { element } from "../element.js";
 
-let groups = 0;
+const MOVES = { ArrowLeft: -1, ArrowUp: -1, ArrowRight: 1, ArrowDown: 1 };
 
 /**
- * A row of alternatives of which one holds, made of radio buttons. It shows what it is told by `show`; a click only asks.
+ * A row of alternatives of which one holds. It shows what it is told by `show`; a click only asks. Arrow keys move the
+ * focus and Enter or Space chooses, so that nothing switches on a live rig by passing over it.
  */
 export class Segmented {
   /** @param {string} label what is chosen @param {{value: any, text: string, title?: string}[]} options
    *  @param {(value: any) => void} choose called with what was clicked */
   constructor(label, options, choose) {
-    const name = `choice-${(groups += 1)}`;
     this.shown = undefined;
-    this.options = options.map(({ value, text, title }) => {
-      const input = element("input", { type: "radio", name, value: String(value) });
-      input.addEventListener("change", () => {
-        this.show(this.shown);
-        choose(value);
-      });
-      return { value, input, label: element("label", { title }, input, element("span", {}, text)) };
-    });
-    this.root = element("div", { class: "segmented", role: "radiogroup", "aria-label": label }, ...this.options.map((option) => option.label));
+    this.options = options.map(({ value, text, title }) => ({
+      value,
+      button: element("button", { type: "button", role: "radio", "data-value": String(value), title, click: () => this.#ask(value, choose) }, text),
+    }));
+    this.root = element(
+      "div",
+      { class: "segmented", role: "radiogroup", "aria-label": label, keydown: (event) => this.#move(event) },
+      ...this.options.map((option) => option.button),
+    );
+    this.show(undefined);
   }
 
   show(value) {
     this.shown = value;
-    for (const option of this.options) option.input.checked = option.value === value;
+    const reachable = this.options.find((option) => option.value === value) ?? this.options[0];
+    for (const option of this.options) {
+      option.button.setAttribute("aria-checked", String(option.value === value));
+      option.button.tabIndex = option === reachable ? 0 : -1;
+    }
+  }
+
+  #ask(value, choose) {
+    if (value !== this.shown) choose(value);
+  }
+
+  #move(event) {
+    const step = MOVES[event.key];
+    if (!step) return;
+    event.preventDefault();
+    const at = this.options.findIndex((option) => option.button === document.activeElement);
+    this.options[(at + step + this.options.length) % this.options.length].button.focus();
   }
 }

@@ -1,0 +1,73 @@
+"""Figures of merit of recorded samples, each defined once. Never from a moving end sample: over a stated window."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vssea_core.channels import INDEX, LIMITS
+
+Rows = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Metric:
+    """One figure: its name, the words and the unit it is shown with, what it means, and how it is computed from rows."""
+
+    name: str
+    label: str
+    unit: str
+    description: str
+    compute: Callable[[Rows], float]
+
+
+def _column(rows: Rows, name: str) -> Rows:
+    column: Rows = rows[:, INDEX[name]]
+    return column
+
+
+def _rms(values: Rows) -> float:
+    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else 0.0
+
+
+def _peak(values: Rows) -> float:
+    return float(np.max(np.abs(values))) if len(values) else 0.0
+
+
+TORQUE_LIMITS = sum(limit.bit for limit in LIMITS if limit.name.startswith("motor_"))
+
+
+def _saturated(rows: Rows) -> float:
+    bits = _column(rows, "limits").astype(np.int64)
+    return 100.0 * float(np.mean((bits & TORQUE_LIMITS) != 0)) if len(rows) else 0.0
+
+
+METRICS: tuple[Metric, ...] = (
+    Metric("peak_error", "peak error", "rad", "Largest |reference - link| in the window.", lambda rows: _peak(_column(rows, "error"))),
+    Metric("rms_error", "RMS error", "rad", "Root mean square of reference - link.", lambda rows: _rms(_column(rows, "error"))),
+    Metric("peak_torque", "peak torque", "N·m", "Largest applied motor torque.", lambda rows: _peak(_column(rows, "motor_torque"))),
+    Metric("rms_torque", "RMS torque", "N·m", "Root mean square of the applied motor torque.", lambda rows: _rms(_column(rows, "motor_torque"))),
+    Metric(
+        "torque_chatter", "torque chatter", "N·m",
+        "Root mean square of the change of the motor torque from one sample to the next.",
+        lambda rows: _rms(np.diff(_column(rows, "motor_torque"))),
+    ),
+    Metric("saturated", "saturated", "%", "Share of samples in which a limit held the motor torque back.", _saturated),
+    Metric(
+        "observer_error", "observer error", "N·m", "Root mean square of link disturbance - estimate.",
+        lambda rows: _rms(_column(rows, "link_disturbance") - _column(rows, "link_disturbance_estimate")),
+    ),
+)  # fmt: skip
+
+
+def metrics(rows: Rows) -> dict[str, float]:
+    """Return every metric of `rows` (samples, channels) by name, in the units of METRICS."""
+    return {metric.name: metric.compute(rows) for metric in METRICS}
+
+
+def limit_shares(rows: Rows) -> dict[str, float]:
+    """Return by limit's name the share of samples [0, 1] in which it was active; limits that never were are left out."""
+    bits = _column(rows, "limits").astype(np.int64)
+    shares = {limit.name: float(np.mean((bits & limit.bit) != 0)) if len(bits) else 0.0 for limit in LIMITS}
+    return {name: share for name, share in shares.items() if share > 0.0}
