@@ -48,9 +48,10 @@ def waiting_page(theme: Theme, sentence: str) -> bytes:
     middle, rim, text = BACKGROUND[theme]
     return (
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Scene</title>'
-        f'<meta http-equiv="refresh" content="1"><style>html{{height:100%}}body{{margin:0;height:100%;display:grid;'
-        f"place-items:center;color:{text};background:radial-gradient(circle at 45% 40%,{middle},{rim});"
-        f"font:12.5px system-ui,sans-serif;text-align:center}}</style></head><body><p>{html.escape(sentence)}</p></body></html>"
+        f'<meta http-equiv="refresh" content="1"><style>html{{height:100%}}body{{margin:0 24px;height:100%;'
+        f"display:grid;place-items:center;color:{text};background:radial-gradient(circle at 45% 40%,{middle},{rim});"
+        f"font:12.5px system-ui,sans-serif;text-align:center}}</style></head>"
+        f"<body><p>{html.escape(sentence)}</p></body></html>"
     ).encode()
 
 

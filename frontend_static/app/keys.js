@@ -44,6 +44,7 @@ export function bindKeys(actions) {
       if (!bound || (!bound.whileTyping && (isTyping(event.target) || document.querySelector("dialog[open]")))) return;
       if (bound.key === " " && isPressable(event.target)) return;
       if (!bound.whileTyping) event.preventDefault();
+      if (bound.key === "Escape") document.querySelector("dialog[open]")?.close();
       if (!event.repeat) actions[bound.does]();
     },
     { capture: true },

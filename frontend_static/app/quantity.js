@@ -19,7 +19,6 @@ export function decimalsFor(magnitude) {
 export function significant(value) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   const size = Math.abs(value);
-  if (size === 0) return "0";
   if (size >= 1e5 || (size > 0 && size < 1e-4)) return exponential(value, 3).replace("-", MINUS);
   return fixed(value, decimalsFor(size));
 }

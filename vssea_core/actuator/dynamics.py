@@ -11,7 +11,7 @@ from typing import NamedTuple
 from vssea_core.actuator.spring import leaf
 from vssea_core.actuator.stages import shifted_1, shifted_2, shifted_3, shifted_4, shifted_5
 from vssea_core.compiled import inlined
-from vssea_core.signals.disturbances import INSTANTS, loads_of_period, loads_of_step
+from vssea_core.signals.disturbances import INSTANTS, loads_of_step
 
 
 class Plant(NamedTuple):
@@ -132,18 +132,14 @@ def advance_plant(plant, whole_lag, fine_lag, state, tau_e, tau_ms, link_terms, 
     """
     y = (state.theta_l, state.theta_e, state.theta_ms, state.omega_l, state.omega_e, state.omega_ms)
     gap = state.motor_torque - tau_e
-    if plant.coulomb_friction == 0.0 or abs(state.omega_e) > 10.0 * plant.friction_velocity:
-        loads_l, loads_e = loads_of_period(link_terms, time), loads_of_period(motor_terms, time)
-        y = dormand_prince_step(plant, whole_lag, y, gap, tau_e, tau_ms, loads_l, loads_e, sample_time_s)
-        gap *= whole_lag.left
-    else:
-        steps = int(plant.substeps)
-        h = sample_time_s / steps
-        for step in range(steps):
-            loads_l = loads_of_step(link_terms, time, time + step * h, h)
-            loads_e = loads_of_step(motor_terms, time, time + step * h, h)
-            y = dormand_prince_step(plant, fine_lag, y, gap, tau_e, tau_ms, loads_l, loads_e, h)
-            gap *= fine_lag.left
+    whole = plant.coulomb_friction == 0.0 or abs(state.omega_e) > 10.0 * plant.friction_velocity
+    steps, lag = (1, whole_lag) if whole else (int(plant.substeps), fine_lag)
+    h = sample_time_s / steps
+    for step in range(steps):
+        loads_l = loads_of_step(link_terms, time, time + step * h, h, whole)
+        loads_e = loads_of_step(motor_terms, time, time + step * h, h, whole)
+        y = dormand_prince_step(plant, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, h)
+        gap *= lag.left
     theta_l, theta_e, theta_ms, omega_l, omega_e, omega_ms = y
     if theta_ms < plant.theta_ms_stiff:
         theta_ms, omega_ms = plant.theta_ms_stiff, max(omega_ms, 0.0)

@@ -1,31 +1,14 @@
 """From a tuning to the flat numbers of the tick."""
 
 import math
-from typing import NamedTuple
-
 import numpy as np
-from numba.np.unsafe.ndarray import to_fixed_tuple
 from numpy.typing import NDArray
 
-from vssea_core.compiled import inlined
 from vssea_core.control import observer_design
 from vssea_core.control.design import state_feedback_gains, surface_gains
 from vssea_core.control.law import SLIDING_MODE, STATE_FEEDBACK, Law
-from vssea_core.control.observer import Channel, Memory, ObserverGains, Spring
+from vssea_core.control.observer import ObserverGains
 from vssea_core.control.tuning import SlidingMode, StateFeedback, Tuning, VelocityObserver
-
-LAW, GAINS, CHANNEL, SPRING = len(Law._fields), len(ObserverGains._fields), len(Channel._fields), len(Spring._fields)
-MEMORY_SIZE = 3 * CHANNEL + SPRING
-
-
-class Prepared(NamedTuple):
-    """A tuning as the tick takes it."""
-
-    law: Law
-    link: ObserverGains
-    motor: ObserverGains
-    stiffness: ObserverGains
-
 
 def prepare(tuning: Tuning, sample_time_s: float) -> NDArray[np.float64]:
     """Return `tuning` as one array of numbers: gains and discrete matrices, in the order of Prepared."""
@@ -83,36 +66,3 @@ def _observer_gains(tuning: Tuning, bandwidth: float, damping_rate: float, sampl
         a, b0, b1, m = observer_design.position_form(bandwidth, damping_rate, sample_time_s)
         position = np.array([*a[0, 1:], *a[1, 1:], b0[0], b1[0], b0[1], b1[1], *m])
     return ObserverGains(*velocity, *position, sample_time_s)
-
-
-@inlined
-def loaded_prepared(values):  # type: ignore[no-untyped-def]
-    """Return the Prepared of an array made by `prepare`."""
-    return Prepared(
-        Law(*to_fixed_tuple(values[:LAW], LAW)),
-        ObserverGains(*to_fixed_tuple(values[LAW : LAW + GAINS], GAINS)),
-        ObserverGains(*to_fixed_tuple(values[LAW + GAINS : LAW + 2 * GAINS], GAINS)),
-        ObserverGains(*to_fixed_tuple(values[LAW + 2 * GAINS : LAW + 3 * GAINS], GAINS)),
-    )
-
-
-@inlined
-def loaded_memory(values):  # type: ignore[no-untyped-def]
-    """Return the Memory kept in an array of MEMORY_SIZE numbers; all zeros is a controller that has not started."""
-    return Memory(
-        Channel(*to_fixed_tuple(values[:CHANNEL], CHANNEL)),
-        Channel(*to_fixed_tuple(values[CHANNEL : 2 * CHANNEL], CHANNEL)),
-        Channel(*to_fixed_tuple(values[2 * CHANNEL : 3 * CHANNEL], CHANNEL)),
-        Spring(*to_fixed_tuple(values[3 * CHANNEL : 3 * CHANNEL + SPRING], SPRING)),
-    )
-
-
-@inlined
-def keep_memory(values, memory):  # type: ignore[no-untyped-def]
-    """Write `memory` into an array of MEMORY_SIZE numbers."""
-    for i in range(CHANNEL):
-        values[i] = memory.link[i]
-        values[CHANNEL + i] = memory.motor[i]
-        values[2 * CHANNEL + i] = memory.stiffness[i]
-    for i in range(SPRING):
-        values[3 * CHANNEL + i] = memory.spring[i]

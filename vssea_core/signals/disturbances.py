@@ -60,17 +60,20 @@ def load(rows, tick_time, time):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def loads_of_period(rows, time):  # type: ignore[no-untyped-def]
-    """Return the torques [N m] at the six instants of the period that starts at the tick at `time` [s]."""
+def loads_of_step(rows, tick_time, time, h, whole):  # type: ignore[no-untyped-def]
+    """Return the torques [N m] at the six instants of a step of `h` [s] from `time`, in the period starting at `tick_time`.
+
+    If the step is the `whole` period, the angles of a sine are turned by precomputed ones, which saves four sines.
+    """
     a = b = c = d = e = f = 0.0
     for i in range(rows.shape[0]):
         row = rows[i]
-        if active(row, time):
+        if active(row, tick_time):
             size = row[1]
+            angle = row[2] * time + row[3]
             if row[0] == CONSTANT:
                 a, b, c, d, e, f = a + size, b + size, c + size, d + size, e + size, f + size
-            else:
-                angle = row[2] * time + row[3]
+            elif whole:
                 sine, cosine = size * math.sin(angle), size * math.cos(angle)
                 a += sine
                 b += sine * row[6] + cosine * row[11]
@@ -78,20 +81,15 @@ def loads_of_period(rows, time):  # type: ignore[no-untyped-def]
                 d += sine * row[8] + cosine * row[13]
                 e += sine * row[9] + cosine * row[14]
                 f += sine * row[10] + cosine * row[15]
+            else:
+                turn = row[2] * h
+                a += size * math.sin(angle)
+                b += size * math.sin(angle + C2 * turn)
+                c += size * math.sin(angle + C3 * turn)
+                d += size * math.sin(angle + C4 * turn)
+                e += size * math.sin(angle + C5 * turn)
+                f += size * math.sin(angle + C6 * turn)
     return a, b, c, d, e, f
-
-
-@inlined
-def loads_of_step(rows, tick_time, time, h):  # type: ignore[no-untyped-def]
-    """Return the torques [N m] at the six instants of a step of `h` [s] inside the period that starts at `tick_time`."""
-    return (
-        load(rows, tick_time, time),
-        load(rows, tick_time, time + C2 * h),
-        load(rows, tick_time, time + C3 * h),
-        load(rows, tick_time, time + C4 * h),
-        load(rows, tick_time, time + C5 * h),
-        load(rows, tick_time, time + C6 * h),
-    )
 
 
 @entry

@@ -15,7 +15,7 @@ from vssea_core.actuator.dynamics import PlantState, advance_plant, dry_friction
 from vssea_core.actuator.sensors import measure
 from vssea_core.actuator.spring import leaf
 from vssea_core.compiled import entry, inlined
-from vssea_core.control.prepared import MEMORY_SIZE, keep_memory, loaded_memory, loaded_prepared
+from vssea_core.control.packing import MEMORY_SIZE, keep_memory, loaded_memory, loaded_prepared
 from vssea_core.control.step import step
 from vssea_core.signals.disturbances import load
 from vssea_core.signals.references import TRANSITION_SIZE, decay_transition, reference_at, with_transition

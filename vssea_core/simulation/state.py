@@ -15,7 +15,7 @@ from vssea_core.actuator.parameters import Actuator, Timing
 from vssea_core.actuator.sensors import Encoders, encoders
 from vssea_core.actuator.spring import equilibrium_deflection, stiffness_motor_position
 from vssea_core.compiled import inlined
-from vssea_core.control.prepared import MEMORY_SIZE
+from vssea_core.control.packing import MEMORY_SIZE
 from vssea_core.scenario import Scenario
 from vssea_core.signals.disturbances import disturbance_rows, load_at
 from vssea_core.signals.references import TRANSITION_SIZE

@@ -9,7 +9,7 @@ import { YRange } from "./y_range.js";
 const LEFT_PX = 52;
 const RIGHT_PX = 44;
 const TIME_AXIS_PX = 22;
-const TICK_EVERY_PX = 17;
+const TICK_EVERY_PX = 21;
 const FONT = '11px system-ui, -apple-system, "Segoe UI", sans-serif';
 
 /** One of the stacked charts: legend strip, uPlot, and y scales that keep still. */
@@ -159,7 +159,7 @@ export class Chart {
       series: [{}, ...this.series.map((series) => this.#line(series)), ...(this.layout.limit ? [this.#limitLine(1), this.#limitLine(-1)] : [])],
       cursor: {
         y: false,
-        points: { size: 6, width: 0 },
+        points: { size: 6, width: 0, fill: (_, index) => this.#pointColour(index) },
         drag: { x: true, y: false, setScale: false },
         sync: { key: "time", scales: ["x", null] },
         bind: { dblclick: () => () => this.stack.followAgain() },
@@ -197,6 +197,11 @@ export class Chart {
       paths: linePath({ isShown: onlyWhenUnlike ? () => this.#unlike.has(channel) : undefined }),
       points: { show: false },
     };
+  }
+
+  #pointColour(index) {
+    const series = this.series[index - 1];
+    return series ? this.stack.palette.colour(`series-${series.colour}`) : "transparent";
   }
 
   #limitLine(sign) {

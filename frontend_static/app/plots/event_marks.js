@@ -4,6 +4,7 @@ import { fixed } from "../quantity.js";
 const KINDS = { disturbance: "series-disturbance", tuning: "dim", stiffness: "series-stiffness", reference: "dim", limit: "warning", fault: "fault", state: "dim" };
 const MARKS_KEPT = 500;
 const REACH_PX = 5;
+const APART_PX = 8; // a dragged slider leaves many marks of one kind
 
 /** Thin vertical lines where something happened, with its word under the pointer. */
 export class EventMarks {
@@ -34,15 +35,15 @@ export class EventMarks {
   static draw(plot, marks, palette) {
     const { ctx, bbox } = plot;
     const [from, to] = [plot.scales.x.min, plot.scales.x.max];
-    let drawn = -Infinity;
+    const drawn = new Map();
     ctx.save();
     ctx.lineWidth = devicePixelRatio;
     ctx.setLineDash([3 * devicePixelRatio, 3 * devicePixelRatio]);
     for (const mark of marks) {
       const x = Math.round(plot.valToPos(mark.time, "x", true)) + 0.5;
-      if (mark.time < from || mark.time > to || Math.abs(x - drawn) < 2) continue;
-      drawn = x;
-      ctx.strokeStyle = palette.faint(mark.colour, 0.75);
+      if (mark.time < from || mark.time > to || x - (drawn.get(mark.colour) ?? -Infinity) < APART_PX * devicePixelRatio) continue;
+      drawn.set(mark.colour, x);
+      ctx.strokeStyle = palette.faint(mark.colour, 0.6);
       ctx.beginPath();
       ctx.moveTo(x, bbox.top);
       ctx.lineTo(x, bbox.top + bbox.height);

@@ -54,12 +54,14 @@ export class MeasuringCursors extends EventTarget {
       ctx.save();
       ctx.strokeStyle = ctx.fillStyle = palette.colour("text");
       ctx.lineWidth = devicePixelRatio;
+      ctx.setLineDash([]);
       ctx.beginPath();
       ctx.moveTo(x, bbox.top);
       ctx.lineTo(x, bbox.top + bbox.height);
       ctx.stroke();
       ctx.font = `600 ${11 * devicePixelRatio}px system-ui, sans-serif`;
       ctx.textBaseline = "top";
+      ctx.textAlign = "left";
       if (isTop) ctx.fillText(letter, x + 4 * devicePixelRatio, bbox.top + 2 * devicePixelRatio);
       ctx.restore();
     }

@@ -1,7 +1,7 @@
 import { element } from "../element.js";
 import { KEYS, ROW_KEYS } from "../keys.js";
 
-/** All keys, from the same table as the bindings. */
+/** All keys, from the same table as the bindings. Not modal: a modal dialog would make STOP inert. */
 export class KeysDialog {
   constructor() {
     this.dialog = document.getElementById("keys-dialog");
@@ -11,6 +11,6 @@ export class KeysDialog {
   }
 
   show() {
-    if (!this.dialog.open) this.dialog.showModal();
+    if (!this.dialog.open) this.dialog.show();
   }
 }

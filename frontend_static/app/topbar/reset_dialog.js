@@ -1,6 +1,6 @@
 import { setText } from "../element.js";
 
-/** The one question the page asks: whether to go back to t = 0. */
+/** The one question the page asks: whether to go back to t = 0. Not modal: a modal dialog would make STOP inert. */
 export class ResetDialog {
   #confirmed = () => {};
 
@@ -16,6 +16,6 @@ export class ResetDialog {
     const then = ["stopped", "fault"].includes(snapshot?.state) ? "The session is then ready; start it with ▶." : "It starts again at once.";
     setText(this.text, `Time goes back to 0 and the plots are cleared for every page. The tuning stays. ${then}`);
     this.dialog.returnValue = "";
-    this.dialog.showModal();
+    this.dialog.show();
   }
 }
