@@ -1,1 +1,1 @@
-"""The machine room: everything with a clock, a socket, a file or a wire."""
+"""Everything with a clock, a socket, a file or a process: server, live session, compute workers, scene."""

@@ -9,13 +9,13 @@ import numpy as np
 from .estimator import Estimator, Measurement
 from .law import link_torque, stiffness_torque
 from .parameters import Config, Limits
-from .plant import advance, disturbance_over_period
+from .plant import advance, back_torque, disturbance_over_period
 from .sensors import quantise
 from .signals import StiffnessReferenceFilter, link_reference
 
 
 def limited(limits: Limits, torque: float, motor_speed: float) -> float:
-    """Torque [N m] within the peak and, while it drives, within the speed-dependent limit (speed in rad/s)."""
+    """Torque [N m] within the peak and, while it drives, within the limit that the winding sets at the true speed [rad/s]."""
     bound = limits.peak_torque
     if torque * motor_speed > 0.0 and np.isfinite(limits.no_load_speed):
         bound = min(bound, max(0.0, limits.stall_torque * (1.0 - abs(motor_speed) / limits.no_load_speed)))
@@ -57,8 +57,9 @@ def simulate(config: Config) -> dict[str, np.ndarray]:
     sensors, estimator = Sensors(config), Estimator(controller, model, dt)
     stiffness_reference = StiffnessReferenceFilter(config.stiffness, model, dt)
     state = np.array([*config.initial_state, stiffness_reference.first, 0.0, config.initial_torque])
-    feed, feed_ms = config.initial_torque, 0.0
-    waiting, waiting_ms = config.initial_torque, 0.0
+    preload = back_torque(plant, state[2] - state[0], state[4])
+    feed, feed_ms = config.initial_torque, preload
+    waiting, waiting_ms = config.initial_torque, preload
     rows: dict[str, list] = {}
     for k in range(round(config.duration_s / dt)):
         t = k * dt
@@ -67,7 +68,7 @@ def simulate(config: Config) -> dict[str, np.ndarray]:
         deflection = measured.angles[1] - measured.angles[0]
         reference, wanted = link_reference(config.reference, t), stiffness_reference.state
         decided = link_torque(controller, model, reference, known, wanted[2])
-        torque = limited(config.limits, decided["torque"], known.omega_e)
+        torque = limited(config.limits, decided["torque"], state[3])
         torque_ms = stiffness_torque(controller, model, wanted, known, deflection)
         peak = config.limits.stiffness_peak_torque
         torque_ms = float(np.clip(torque_ms, -peak, peak))

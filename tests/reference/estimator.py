@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -94,7 +94,8 @@ class Estimator:
         if self.kind == "position":
             link, motor, stiffness = (observer.x for observer in self.position)
             velocities = (link[1], motor[1], stiffness[1])
-            return _known((link[0], motor[0], now.angles[2]), velocities, link[2:], motor[2:], stiffness[2:])
+            known = _known((link[0], motor[0], now.angles[2]), velocities, link[2:], motor[2:], stiffness[2:])
+            return replace(known, theta_ms_estimate=float(stiffness[0]))
         if self.kind == "exact":
             return _known(now.angles, now.velocities, *(observer.d for observer in self.sampled))
         actuator = self.actuator.estimate(_state(now, 0, 1))

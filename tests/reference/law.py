@@ -18,11 +18,12 @@ class Knowledge:
     omega_l: float
     theta_e: float
     omega_e: float
-    theta_ms: float
+    theta_ms: float  # measured
     omega_ms: float
     link: np.ndarray  # (3,) [rad/s^2, rad/s^3, rad/s^4]
     motor: np.ndarray  # (3,)
     stiffness_motor: np.ndarray  # (3,)
+    theta_ms_estimate: float | None = None  # what the position form's observer makes of theta_ms; None = the measured one
 
 
 def switch(sigma: float, layer: float) -> float:
@@ -66,7 +67,8 @@ def stiffness_torque(
 ) -> float:
     """Stiffness-motor torque [N m], Eq. (19) with r'' and b_ms; `reference` is [r, r', r'']."""
     w, zeta = controller.stiffness_pole, controller.stiffness_damping
-    acceleration = reference[2] + w**2 * (reference[0] - known.theta_ms)
+    theta_ms = known.theta_ms if known.theta_ms_estimate is None else known.theta_ms_estimate
+    acceleration = reference[2] + w**2 * (reference[0] - theta_ms)
     acceleration += 2.0 * zeta * w * (reference[1] - known.omega_ms) + known.stiffness_motor[0]
     back = back_torque(model, measured_deflection, known.theta_ms)
     return float(model.stiffness_inertia * acceleration + model.stiffness_damping * known.omega_ms + back)

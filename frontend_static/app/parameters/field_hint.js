@@ -1,5 +1,6 @@
 import { element } from "../element.js";
 import { inputText } from "../quantity.js";
+import { symbol } from "./symbol.js";
 
 const DELAY_MS = 350;
 
@@ -34,7 +35,7 @@ export class FieldHint {
 
   #show(row, lines) {
     if (!row.isConnected) return;
-    this.box.replaceChildren(...lines.filter((line) => line.text).map((line) => element("p", { class: line.class ?? null }, line.text)));
+    this.box.replaceChildren(...lines.filter((line) => line.text).map(paragraph));
     this.box.hidden = false;
     const place = row.getBoundingClientRect();
     const { offsetWidth, offsetHeight } = this.box;
@@ -45,14 +46,18 @@ export class FieldHint {
   }
 }
 
-/** @returns {{text: string, class?: string}[]} what the hint says of a field */
+function paragraph(line) {
+  return element("p", { class: line.class ?? null }, line.text, ...(line.symbol ? ["  ", ...symbol(line.symbol)] : []));
+}
+
+/** @returns {{text: string, symbol?: string, class?: string}[]} what the hint says of a field */
 export function describeField(field, baselineText) {
   const unit = field.unit ? ` ${field.unit}` : "";
   const source = field.basis ? `, ${field.basis}` : "";
   const range = Number.isFinite(field.low) && Number.isFinite(field.high) ? `Permitted ${inputText(field.low)} to ${inputText(field.high)}${unit}` : "";
   const normal = typeof field.default === "number" ? inputText(field.default) + unit : String(field.default ?? "");
   return [
-    { text: field.symbol ? `${field.title}  ${field.symbol}` : field.title, class: "hint-title" },
+    { text: field.title, symbol: field.symbol, class: "hint-title" },
     { text: field.description },
     { text: field.equation ? `Eq. ${field.equation}` : "", class: "hint-dim" },
     { text: range, class: "hint-dim" },

@@ -1,5 +1,6 @@
 import { element, setText } from "../element.js";
 import { describeField } from "./field_hint.js";
+import { symbol } from "./symbol.js";
 
 const NOTE_MS = 6000;
 
@@ -23,7 +24,7 @@ export class ParameterRow {
       { class: "row-name", id: `name-${place.path}`, dblclick: () => this.reset() },
       this.dot,
       element("span", { class: "row-title" }, field.title),
-      field.symbol ? element("span", { class: "row-symbol" }, field.symbol) : null,
+      field.symbol ? element("span", { class: "row-symbol" }, ...symbol(field.symbol)) : null,
     );
     this.note = element("p", { class: "row-note", role: "status", hidden: true });
     this.root = element("div", { class: "row", "data-path": place.path }, this.name, ...controls, this.note);

@@ -1,8 +1,10 @@
 import uPlot from "/vendor/uPlot.esm.js";
 import { element } from "../element.js";
+import { channelsOf } from "./chart_list.js";
+import { Envelope } from "./envelope.js";
 import { EventMarks } from "./event_marks.js";
 import { Legend } from "./legend.js";
-import { extent, linePath } from "./line_path.js";
+import { linePath } from "./line_path.js";
 import { niceTicks, tickTexts } from "./nice_ticks.js";
 import { YRange } from "./y_range.js";
 
@@ -16,7 +18,6 @@ const FONT = '11px system-ui, -apple-system, "Segoe UI", sans-serif';
 export class Chart {
   #limitIsNear = false;
   #unlike = new Set();
-  #legendAt = 0;
 
   /** @param {object} layout entry of chart_list.js @param {object} stack {session, palette, timeWindow, cursors, marks, redraw} */
   constructor(layout, stack, { hasTimeAxis, isTop }) {
@@ -26,9 +27,15 @@ export class Chart {
     this.isTop = isTop;
     this.ranges = { left: new YRange(layout.left.smallest), right: layout.right ? new YRange(layout.right.smallest) : null };
     this.series = layout.series.map((series) => ({ side: "left", label: stack.session.channels.get(series.channel)?.label ?? series.channel, ...series }));
+    this.envelopes = new Map(channelsOf([layout]).map((channel) => [channel, new Envelope()]));
     this.legend = this.#makeLegend();
     this.canvasArea = element("div", { class: "chart-area" });
     this.root = element("section", { class: "chart", id: `chart-${layout.id}`, "aria-label": layout.name }, this.legend.root, this.canvasArea);
+  }
+
+  /** Width of the plot itself, in device pixels. */
+  get pixels() {
+    return Math.round(this.plot.bbox.width);
   }
 
   /** Make the uPlot, once the area has a size. */
@@ -43,11 +50,11 @@ export class Chart {
     this.plot.setSize({ width, height });
   }
 
-  /** Scale and draw the samples [first, last] of a picture over the time span [from, to]. */
-  draw(picture, first, last, [from, to], now) {
-    this.#follow(picture, first, last, now);
+  /** Scale and draw the samples of a span of a picture over the time [from, to]. */
+  draw(picture, span, [from, to], now) {
+    this.#follow(picture, span, now);
     this.plot.batch(() => {
-      this.plot.setData(this.#data(picture, first, last + 1), false);
+      this.plot.setData(this.#data(picture, span.first, span.last + 1), false);
       this.plot.setScale("x", { min: from, max: to });
     });
   }
@@ -72,6 +79,7 @@ export class Chart {
     const inOrder = [...this.series].sort((a, b) => Boolean(b.isFirstInLegend) - Boolean(a.isFirstInLegend));
     const entries = inOrder.map((series) => ({
       label: series.label,
+      title: stack.session.channels.get(series.channel)?.label ?? series.label,
       colour: `series-${series.colour}`,
       isDashed: Boolean(series.dash),
       isHidden: Boolean(series.isHidden),
@@ -100,34 +108,32 @@ export class Chart {
     return [picture.time.subarray(from, to), ...channels.map((name) => picture.column(name).subarray(from, to))];
   }
 
-  #follow(picture, first, last, now) {
-    const { limit } = this.layout;
+  #follow(picture, span, now) {
+    for (const [channel, envelope] of this.envelopes) envelope.measure(picture.column(channel), span);
     for (const [side, range] of Object.entries(this.ranges)) {
       if (!range) continue;
-      let reach = [Infinity, -Infinity];
-      for (const series of this.series) {
-        if (series.onlyWhenUnlike) this.#compare(picture, series, first, last);
-        if (series.side === side && !series.isHidden) reach = extent(picture.column(series.channel), first, last, ...reach);
-      }
-      if (limit && side === "left") reach = this.#withLimit(picture.column(limit.channel), first, last, reach);
-      range.follow(...reach, now);
+      const shown = this.series.filter((series) => series.side === side && !series.isHidden).map(({ channel }) => this.envelopes.get(channel));
+      let low = Math.min(...shown.map(({ min }) => min));
+      let high = Math.max(...shown.map(({ max }) => max));
+      if (this.layout.limit && side === "left") [low, high] = this.#withLimit(low, high);
+      range.follow(low, high, now);
     }
+    for (const series of this.series) if (series.onlyWhenUnlike) this.#compare(series);
   }
 
-  #withLimit(limits, first, last, [low, high]) {
-    const [smallest, largest] = extent(limits, first, last);
-    this.#limitIsNear = Math.max(-low, high) > this.layout.limit.near * smallest;
-    return this.#limitIsNear ? [Math.min(low, -largest), Math.max(high, largest)] : [low, high];
+  /** Limits are drawn, and given room, when the signal comes near. */
+  #withLimit(low, high) {
+    const { min, max } = this.envelopes.get(this.layout.limit.channel);
+    this.#limitIsNear = Math.max(-low, high) > this.layout.limit.near * min;
+    return this.#limitIsNear ? [Math.min(low, -max), Math.max(high, max)] : [low, high];
   }
 
-  #compare(picture, series, first, last) {
-    const one = picture.column(series.channel);
-    const other = picture.column(series.onlyWhenUnlike);
-    const limit = 1e-3 * (this.ranges[series.side].max - this.ranges[series.side].min);
-    let i = first;
-    while (i <= last && !(Math.abs(one[i] - other[i]) > limit)) i += 1;
-    if (i <= last) this.#unlike.add(series.channel);
-    else this.#unlike.delete(series.channel);
+  #compare({ channel, onlyWhenUnlike, side }) {
+    const [one, other] = [this.envelopes.get(channel), this.envelopes.get(onlyWhenUnlike)];
+    const visible = 0.01 * (this.ranges[side].max - this.ranges[side].min);
+    const isUnlike = Math.abs(one.min - other.min) > visible || Math.abs(one.max - other.max) > visible;
+    if (isUnlike) this.#unlike.add(channel);
+    else this.#unlike.delete(channel);
   }
 
   #wheel(event) {
@@ -194,7 +200,7 @@ export class Chart {
       width: width ?? (isFaint ? 1 : 1.5),
       stroke: () => (isFaint ? palette.faint(`series-${colour}`, 0.45) : palette.colour(`series-${colour}`)),
       dash,
-      paths: linePath({ isShown: onlyWhenUnlike ? () => this.#unlike.has(channel) : undefined }),
+      paths: linePath({ envelope: this.envelopes.get(channel), isShown: onlyWhenUnlike ? () => this.#unlike.has(channel) : undefined }),
       points: { show: false },
     };
   }
@@ -211,7 +217,7 @@ export class Chart {
       width: 1,
       stroke: () => this.stack.palette.colour("limit-line"),
       dash: [2, 3],
-      paths: linePath({ sign, isShown: () => this.#limitIsNear }),
+      paths: linePath({ envelope: this.envelopes.get(this.layout.limit.channel), sign, isShown: () => this.#limitIsNear }),
       points: { show: false },
     };
   }

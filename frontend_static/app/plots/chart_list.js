@@ -37,8 +37,8 @@ export const CHARTS = [
     series: [
       { channel: "link_disturbance", label: "link disturbance", colour: "disturbance", width: 2.5 },
       { channel: "link_disturbance_estimate", label: "estimate", colour: "link", width: 1.25 },
-      { channel: "motor_disturbance", colour: "motor-disturbance", width: 2.5, isHidden: true },
-      { channel: "motor_disturbance_estimate", colour: "torque", width: 1.25, isHidden: true },
+      { channel: "motor_disturbance", label: "on motor", colour: "motor-disturbance", width: 2.5, isHidden: true },
+      { channel: "motor_disturbance_estimate", label: "its estimate", colour: "torque", width: 1.25, isHidden: true },
     ],
   },
   {

@@ -24,7 +24,7 @@ class LegendItem {
     swatch.style.setProperty("--colour", `var(--${entry.colour})`);
     this.root = element(
       "button",
-      { type: "button", class: "legend-item", title: `Show or hide ${entry.label}`, click: () => this.#toggle() },
+      { type: "button", class: "legend-item", title: `Show or hide ${entry.title ?? entry.label}`, click: () => this.#toggle() },
       swatch,
       this.label,
       this.value,

@@ -2,6 +2,7 @@ import { element } from "../element.js";
 import { firstAtOrAfter } from "../session/telemetry_store.js";
 import { Chart } from "./chart.js";
 import { CHARTS, channelsOf } from "./chart_list.js";
+import { Span } from "./envelope.js";
 import { EventMarks } from "./event_marks.js";
 import { MeasuringCursors } from "./measuring_cursors.js";
 import { Palette } from "./palette.js";
@@ -82,8 +83,8 @@ export class PlotStack {
   #frame(now) {
     requestAnimationFrame((next) => this.#frame(next));
     if (!this.#charts.length) return;
-    const { timeWindow, cursors, session } = this;
-    const state = `${timeWindow.isHeld ? "held" : session.store.version}/${timeWindow.version}/${cursors.version}`;
+    const { timeWindow, cursors } = this;
+    const state = `${timeWindow.isHeld ? "held" : this.#moved()}/${timeWindow.version}/${cursors.version}`;
     if (state !== this.#drawn || this.#isAsked) {
       this.#drawn = state;
       this.#isAsked = false;
@@ -93,12 +94,18 @@ export class PlotStack {
     if (this.#isUntold && now - this.#toldAt >= LEGEND_PERIOD_MS) this.#tell(now);
   }
 
+  /** Changes when following the newest sample moves the picture by a pixel. */
+  #moved() {
+    const { store } = this.session;
+    this.timeWindow.pixels = this.#charts[0].pixels;
+    const perPixel = this.timeWindow.seconds / this.timeWindow.pixels;
+    return `${store.epoch}:${store.length > 0}:${Math.ceil(store.lastTime / perPixel)}`;
+  }
+
   #draw(now) {
     const { picture, range } = this.timeWindow;
-    const times = picture.time;
-    const first = Math.max(0, firstAtOrAfter(times, range[0]) - 1);
-    const last = Math.min(times.length - 1, firstAtOrAfter(times, range[1]));
-    for (const chart of this.#charts) chart.draw(picture, first, last, range, now);
+    const span = new Span(picture.time, range, this.#charts[0].pixels);
+    for (const chart of this.#charts) chart.draw(picture, span, range, now);
   }
 
   #tell(now) {

@@ -20,6 +20,7 @@ export class TimeWindow extends EventTarget {
     this.seconds = TimeWindow.choices.includes(saved) ? saved : 10;
     this.held = null;
     this.version = 0;
+    this.pixels = 1000;
   }
 
   get isHeld() {
@@ -67,8 +68,10 @@ export class TimeWindow extends EventTarget {
     this.#changed();
   }
 
+  /** Moves by whole pixels, so that a column keeps its samples and noise does not shimmer. */
   #following() {
-    const end = Math.max(this.store.lastTime, this.seconds);
+    const perPixel = this.seconds / this.pixels;
+    const end = Math.max(Math.ceil(this.store.lastTime / perPixel) * perPixel, this.seconds);
     return [end - this.seconds, end];
   }
 

@@ -1,0 +1,167 @@
+"""The loop of the control process, one turn at a time: STOP first, then commands, then samples."""
+
+import time
+from collections.abc import Iterator
+from multiprocessing.connection import Connection
+
+from backend.loop.engine import Engine
+from backend.loop.messages import (
+    Changed, Command, Done, Install, Load, Pause, Refused, Report, Reset, Resume, SetDisturbances, SetPace, SetReference,
+    SetStiffness, State, Step,
+)  # fmt: skip
+from backend.loop.pacer import Pacer
+from backend.telemetry.ring import EPOCH, EXECUTION_US, LATENESS_US, OVERRUNS, WRITTEN, RingWriter
+from backend.telemetry.stop_flag import StopFlag
+
+SHORTEST_TURN_S = 1e-3
+"""A turn lasts at least this long: faster sample times and paces advance several samples a turn."""
+IDLE_TURN_S = 2e-3
+TICKING: tuple[State, ...] = ("running", "stopped")
+STOP_REASON = "Stopped on request"
+
+
+class ControlLoop:
+    """Owns the engine; everything that can be asked of it comes through the pipe or the stop flag."""
+
+    def __init__(self, ring: RingWriter, flag: StopFlag, pipe: Connection, pacer: Pacer | None = None) -> None:
+        self._ring, self._flag, self._pipe = ring, flag, pipe
+        self._pacer = pacer or Pacer()
+        self._engine: Engine | None = None
+        self._stops_seen = flag.count
+        self._pace = 1.0
+        self.state: State = "starting"
+        self.epoch = 0
+        self.leaving = False
+
+    def turn(self, late_s: float = 0.0) -> float:
+        """Do one turn that started `late_s` too late; return the length [s] of a turn."""
+        if self._flag.count != self._stops_seen:
+            self._stop()
+        for number, command in self._commands():
+            self._report(self._obey(number, command))
+        if self._engine is None or self.state not in TICKING:
+            return IDLE_TURN_S
+        period = self._engine.period_s / self._pace
+        samples = max(1, round(SHORTEST_TURN_S / period))
+        self._advance(samples, late_s)
+        return samples * period
+
+    def run(self) -> None:
+        """Turn until the web process closes its end of the pipe."""
+        late, was_ticking = 0.0, False
+        while not self.leaving:
+            length = self.turn(late)
+            ticking = self.state in TICKING
+            if ticking != was_ticking:
+                self._pacer.restart()
+            was_ticking = ticking
+            before = self._pacer.overruns
+            late = self._pacer.wait(length)
+            if ticking:
+                self._ring.header[OVERRUNS] += self._pacer.overruns - before
+
+    def _advance(self, count: int, late_s: float) -> None:
+        engine = self._engine
+        if engine is None:
+            return
+        _, rows = self._ring.room(count)
+        started = time.perf_counter_ns()
+        done, fault = engine.advance(rows)
+        taken_us = (time.perf_counter_ns() - started) * 1e-3
+        kept = min(done + 1, len(rows)) if fault else done  # the sample from which it could not go on is worth seeing
+        rows[:kept, EPOCH] = self.epoch
+        rows[:kept, LATENESS_US] = late_s * 1e6
+        rows[:kept, EXECUTION_US] = taken_us / len(rows)
+        self._ring.header[WRITTEN] += kept
+        if fault is not None:
+            self._become("fault", f"Diverged at t = {engine.time_s:.3f} s: {fault}. Change the tuning, then Reset.")
+
+    def _stop(self) -> None:
+        self._stops_seen = self._flag.count
+        if self._engine is None or self.state in ("stopped", "fault"):
+            return
+        self._engine.enabled = False
+        self._become("stopped", STOP_REASON)
+
+    def _commands(self) -> Iterator[tuple[int, Command]]:
+        try:
+            while self._pipe.poll():
+                yield self._pipe.recv()
+        except (EOFError, OSError):
+            self.leaving = True
+
+    def _obey(self, number: int, command: Command) -> Report:
+        try:
+            self._apply(command)
+        except ValueError as refusal:
+            return Refused(number, str(refusal))
+        return Done(number, self._engine.time_s if self._engine else 0.0)
+
+    def _apply(self, command: Command) -> None:
+        if isinstance(command, Load):
+            self._engine = Engine(command.scenario, command.prepared, command.tuning_id)
+            self.epoch += 1
+            latched = self.state in ("stopped", "fault")
+            self._become("ready" if latched or not command.run else "running", None)
+            return
+        engine = self._engine
+        if engine is None:
+            raise ValueError("the session is still starting; try again in a moment")
+        match command:
+            case Install(tuning, prepared, tuning_id):
+                engine.install(tuning, prepared, tuning_id)
+            case SetReference(reference):
+                engine.set_reference(reference)
+            case SetStiffness(reference):
+                engine.set_stiffness(reference)
+            case SetDisturbances(disturbances):
+                engine.set_disturbances(disturbances)
+            case SetPace(factor):
+                self._pace = factor
+                self._pacer.restart()
+            case Step(samples):
+                self._step(samples)
+            case Pause():
+                self._pause()
+            case Resume():
+                self._resume()
+            case Reset():
+                self._reset(engine)
+
+    def _pause(self) -> None:
+        if self.state != "running":
+            raise ValueError(f"only a running session can be paused; this one is {self.state}")
+        self._become("paused", None)
+
+    def _resume(self) -> None:
+        if self.state not in ("paused", "ready"):
+            raise ValueError(f"a session that is {self.state} cannot resume; {self._way_out()}")
+        self._become("running", None)
+
+    def _step(self, samples: int) -> None:
+        if self.state != "paused":
+            raise ValueError(f"only a paused session can be stepped; this one is {self.state}")
+        left = samples
+        while left > 0 and self.state == "paused":
+            part = min(left, 1000)
+            before = self._ring.written
+            self._advance(part, 0.0)
+            left -= self._ring.written - before
+
+    def _reset(self, engine: Engine) -> None:
+        engine.restart()
+        self.epoch += 1
+        self._become("ready" if self.state in ("stopped", "fault") else self.state, None)
+
+    def _way_out(self) -> str:
+        return "reset it first" if self.state in ("stopped", "fault") else "it needs no resuming"
+
+    def _become(self, state: State, reason: str | None) -> None:
+        self.state = state
+        self._report(Changed(state, reason, self.epoch, self._engine.time_s if self._engine else 0.0))
+
+    def _report(self, report: Report) -> None:
+        try:
+            self._pipe.send(report)
+        except OSError:
+            self.leaving = True

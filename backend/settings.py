@@ -1,0 +1,40 @@
+"""Settings of the server, as data: one list of name, default and help; environment variables VSSEA_... set them."""
+
+from pathlib import Path
+
+import platformdirs
+from pydantic import Field, model_validator
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+LOOPBACK = ("127.0.0.1", "localhost", "::1")
+
+
+class Settings(BaseSettings):
+    """What a server can be told; every field is documented in docs/settings.md."""
+
+    model_config = SettingsConfigDict(env_prefix="VSSEA_", frozen=True)
+
+    host: str = Field("127.0.0.1", description="Address to listen on; other than loopback needs a token.")
+    port: int = Field(8000, ge=1, le=65535, description="Port to listen on.")
+    token: str | None = Field(None, min_length=16, description="Secret that callers must give; needed beyond loopback.")
+    allowed_hosts: tuple[str, ...] = Field((), description="Further names this server may be called by (Host header).")
+    data_dir: Path = Field(
+        Path(platformdirs.user_data_dir("vssea")), description="Where presets, the last tuning and fault snapshots are kept."
+    )
+    scenario: str = Field("nominal", description="Scenario of the live session at the first start.")
+    scene: bool = Field(True, description="Whether the 3D scene runs.")
+
+    @model_validator(mode="after")
+    def _token_beyond_loopback(self) -> "Settings":
+        if self.host not in LOOPBACK and self.token is None:
+            raise ValueError(
+                f"host {self.host} is not loopback and no token is set; "
+                "set VSSEA_TOKEN to at least 16 characters, or listen on 127.0.0.1"
+            )
+        return self
+
+    @property
+    def hosts(self) -> frozenset[str]:
+        """Host names (without port) that this server answers to."""
+        own = () if self.host in ("0.0.0.0", "::") else (self.host,)
+        return frozenset((*LOOPBACK, *own, *self.allowed_hosts))

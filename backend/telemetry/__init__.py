@@ -1,0 +1,1 @@
+"""Recorded samples on their way: shared-memory ring, binary frames."""
