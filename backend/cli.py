@@ -1,20 +1,90 @@
 """The command `vssea`."""
 
-from typing import Annotated
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
+from pydantic import ValidationError
+
+if TYPE_CHECKING:
+    from backend.settings import Settings
 
 app = typer.Typer(no_args_is_help=True, help="Tune the robust position control of a variable stiffness actuator.")
 
 
-@app.callback()
-def command() -> None:
-    """Keep `serve` a subcommand while it is the only one."""
+def _settings(**given: object) -> "Settings":
+    from backend.settings import Settings
+
+    try:
+        return Settings(**{name: value for name, value in given.items() if value is not None})
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise typer.BadParameter(f"{'.'.join(map(str, first['loc']))} {first['msg']}".strip()) from error
 
 
 @app.command()
 def serve(
-    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Port to listen on.")] = 8000,
+    host: Annotated[str | None, typer.Option(help="Address to listen on (127.0.0.1; others need VSSEA_TOKEN).")] = None,
+    port: Annotated[int | None, typer.Option(help="Port to listen on (8000).")] = None,
+    scenario: Annotated[str | None, typer.Option(help="Scenario of the first start (nominal).")] = None,
 ) -> None:
     """Start the dashboard."""
+    import uvicorn
+
+    from backend.app import create_app
+
+    settings = _settings(host=host, port=port, scenario=scenario)
+    shown = f"[{settings.host}]" if ":" in settings.host else settings.host
+    typer.echo(f"VSSEA on http://{shown}:{settings.port}/  (Ctrl+C ends it)")
+    uvicorn.run(
+        create_app(settings), host=settings.host, port=settings.port, log_level="warning", access_log=False,
+        ws_per_message_deflate=False, ws_ping_interval=5.0, ws_ping_timeout=20.0, timeout_graceful_shutdown=2,
+    )  # fmt: skip
+
+
+@app.command()
+def simulate(
+    file: Annotated[str, typer.Argument(help="Scenario as JSON: a file, - for standard input, or a ready scenario's name.")],
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the trajectory: .csv, .json or .bin.")] = None,
+    every: Annotated[int, typer.Option(min=1, help="Keep every n-th sample of the trajectory.")] = 1,
+    allow_unstable: Annotated[bool, typer.Option(help="Simulate even if the tuning's own loop is unstable.")] = False,
+) -> None:
+    """Simulate a scenario and print its metrics as JSON."""
+    from backend.compute.jobs import simulate_scenario
+    from backend.problem import from_validation
+    from vssea_core.scenario import Scenario
+    from vssea_core.scenarios import SCENARIOS
+
+    forms = {".csv": "csv", ".json": "json", ".bin": "binary"}
+    form = forms.get(output.suffix, "") if output else "none"
+    if not form:
+        raise typer.BadParameter(f"{output}: expected a name ending in {', '.join(forms)}")
+    try:
+        scenario = SCENARIOS[file] if file in SCENARIOS else Scenario.model_validate_json(_read(file))
+        _, content = simulate_scenario(scenario, form, every, allow_unstable)
+        figures = content if form == "none" else simulate_scenario(scenario, "none", 1, True)[1]
+    except ValidationError as error:
+        _refuse(from_validation(error, Scenario).detail)
+    except ValueError as refusal:
+        _refuse(str(refusal))
+    if output:
+        output.write_bytes(content)
+    typer.echo(json.dumps(json.loads(figures), indent=2, ensure_ascii=False))
+
+
+def _read(file: str) -> str:
+    try:
+        return sys.stdin.read() if file == "-" else Path(file).read_text("utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        _refuse(f"{file} cannot be read: {error}; expected a scenario's file or name (nominal, realistic, paper_fig2)")
+
+
+def _refuse(sentence: str) -> NoReturn:
+    typer.echo(f"vssea: {sentence}", err=True)
+    raise typer.Exit(2)
+
+
+if __name__ == "__main__":
+    app()

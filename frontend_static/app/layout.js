@@ -3,7 +3,8 @@
  * parameter comes from the server's schema.
  *
  * `part` is a path of the Scenario document. `kinds` are the alternatives offered for it, each with its fields in order;
- * without `kinds` the part has one shape. `when` hides a field that has no effect at present.
+ * without `kinds` the part has one shape. `when` hides a field that has no effect at present; `short` is a shorter name
+ * where the panel's title says the rest.
  */
 export const PANELS = [
   { id: "scenario", title: "Scenario", is: "scenario" },
@@ -69,7 +70,13 @@ export const PANELS = [
     id: "stiffness-loop",
     title: "Stiffness loop",
     part: "tuning.stiffness_loop",
-    fields: ["bandwidth", "damping", "observer_bandwidth", "reference_bandwidth", "torque_reserve"],
+    fields: [
+      { name: "bandwidth", short: "bandwidth" },
+      { name: "damping", short: "damping" },
+      { name: "observer_bandwidth", short: "observer" },
+      { name: "reference_bandwidth", short: "reference filter" },
+      { name: "torque_reserve", short: "torque reserve" },
+    ],
   },
   {
     id: "model",
@@ -77,7 +84,15 @@ export const PANELS = [
     hint: "What the controller believes, not the plant: differ on purpose to test robustness.",
     part: "tuning.model",
     isCollapsed: true,
-    fields: ["link_inertia", "link_damping", "motor_inertia", "motor_damping", "spring_constant", "stiffness_inertia", "stiffness_damping"],
+    fields: [
+      "link_inertia",
+      "link_damping",
+      "motor_inertia",
+      "motor_damping",
+      "spring_constant",
+      { name: "stiffness_inertia", short: "screw inertia" },
+      { name: "stiffness_damping", short: "screw damping" },
+    ],
   },
 ];
 

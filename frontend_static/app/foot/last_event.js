@@ -16,8 +16,8 @@ export class LastEvent {
   #showEvent() {
     const last = this.session.events.findLast((event) => event.number !== null);
     if (!last) return;
-    const at = last.time_s === null || last.time_s === undefined ? "" : `, t = ${fixed(last.time_s, 2)} s`;
-    setText(this.event, `${last.text}${at}`);
+    const at = last.time_s === null || last.time_s === undefined ? "" : `${fixed(last.time_s, 2)} s  `;
+    setText(this.event, `${at}${last.text}`);
     this.event.title = this.event.textContent;
   }
 

@@ -5,6 +5,7 @@ import { SliderScale } from "./slider_scale.js";
 import { SliderStream } from "./slider_stream.js";
 
 const STEP_GESTURE_MS = 1000;
+const LONG_UNIT = 7;
 
 /** A number: slider, box and unit. */
 export class NumberRow extends ParameterRow {
@@ -17,7 +18,7 @@ export class NumberRow extends ParameterRow {
     const label = `${field.title}${field.unit ? `, ${field.unit}` : ""}`;
     const slider = element("input", { type: "range", min: 0, max: SliderScale.positions, step: 1, "aria-label": label });
     const box = element("input", { type: "text", inputmode: "decimal", autocomplete: "off", spellcheck: "false", "aria-label": label });
-    super(field, place, hint, [slider, box, element("span", { class: "row-unit" }, field.unit)]);
+    super(field, place, hint, [slider, box, element("span", { class: field.unit.length > LONG_UNIT ? "row-unit is-long" : "row-unit", title: field.unit }, field.unit)]);
     this.slider = slider;
     this.box = box;
     this.scale = new SliderScale(field);

@@ -5,7 +5,7 @@ const KEY = "vssea.collapsed";
 /** A short area of a title and lines of controls beside it. */
 export class LinePanel {
   constructor({ id, title }, ...lines) {
-    this.root = element("section", { class: "line-panel", id: `panel-${id}`, "aria-label": title }, element("h2", {}, title), ...lines);
+    this.root = element("div", { class: "line-panel", id: `panel-${id}` }, element("h2", {}, title), ...lines);
   }
 }
 

@@ -8,7 +8,7 @@ const NOTE_MS = 6000;
  * What all parameter rows share: the name with its dot, the place for a note, the echo that waits while the row has
  * focus. Subclasses give `show(value)` and `isBusy`.
  *
- * A row's `place` says where its value lives: {path, read(), write(value, gesture) -> Promise<result>, baseline()}.
+ * A row's `place` says where its value lives: {path, short?, read(), write(value, gesture) -> Promise<result>, baseline()}.
  */
 export class ParameterRow {
   #noteTimer = null;
@@ -23,7 +23,7 @@ export class ParameterRow {
       "span",
       { class: "row-name", id: `name-${place.path}`, dblclick: () => this.reset() },
       this.dot,
-      element("span", { class: "row-title" }, field.title),
+      element("span", { class: "row-title" }, place.short ?? field.title),
       field.symbol ? element("span", { class: "row-symbol" }, ...symbol(field.symbol)) : null,
     );
     this.note = element("p", { class: "row-note", role: "status", hidden: true });

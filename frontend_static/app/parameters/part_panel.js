@@ -31,21 +31,20 @@ export class PartPanel {
     this.#sayOther(now, offered);
     const shape = offered ?? this.layout.kinds?.[0] ?? this.layout;
     const visible = this.#visible(shape, now);
-    const signature = `${shape.kind ?? ""}:${visible.join()}`;
+    const signature = `${shape.kind ?? ""}:${visible.map(({ name }) => name).join()}`;
     if (signature !== this.#shown) {
       this.#shown = signature;
-      this.rowList.replaceChildren(...visible.map((name) => this.#row(name, shape.kind).root));
+      this.rowList.replaceChildren(...visible.map((entry) => this.#row(entry, shape.kind).root));
     }
-    for (const name of visible) this.#row(name, shape.kind).echo(change);
+    for (const entry of visible) this.#row(entry, shape.kind).echo(change);
   }
 
+  /** The layout's fields that the schema has, then those that the layout does not know yet. */
   #visible(shape, now) {
     const listed = shape.fields.map((entry) => (typeof entry === "string" ? { name: entry } : entry));
-    const hidden = new Set(listed.map((entry) => entry.name));
-    const unlisted = this.desk.schema.names(this.layout.part, shape.kind).filter((name) => !hidden.has(name));
-    return [...listed.filter(({ when }) => !when || when(now)).map(({ name }) => name), ...unlisted].filter((name) =>
-      this.desk.schema.field(this.layout.part, name, shape.kind),
-    );
+    const names = this.desk.schema.names(this.layout.part, shape.kind);
+    const unlisted = names.filter((name) => !listed.some((entry) => entry.name === name)).map((name) => ({ name }));
+    return [...listed, ...unlisted].filter(({ name, when }) => names.includes(name) && (!when || when(now)));
   }
 
   #sayOther(now, offered) {
@@ -54,12 +53,12 @@ export class PartPanel {
     if (isOther) setText(this.other, `The scenario asks for “${now.kind}”. Setting a value here makes it “${this.layout.kinds[0].label.toLowerCase()}”.`);
   }
 
-  #row(name, kind) {
+  #row({ name, short }, kind) {
     const key = `${kind ?? ""}.${name}`;
     if (!this.#rows.has(key)) {
       const field = this.desk.schema.field(this.layout.part, name, kind);
       const Row = field.choices ? ChoiceRow : NumberRow;
-      this.#rows.set(key, new Row(field, this.#place(name, kind), this.desk.hint));
+      this.#rows.set(key, new Row(field, { ...this.#place(name, kind), short }, this.desk.hint));
     }
     return this.#rows.get(key);
   }

@@ -121,11 +121,11 @@ export class Chart {
     for (const series of this.series) if (series.onlyWhenUnlike) this.#compare(series);
   }
 
-  /** Limits are drawn, and given room, when the signal comes near. */
+  /** Limits are drawn when the signal comes near; the tightest one is given room. */
   #withLimit(low, high) {
-    const { min, max } = this.envelopes.get(this.layout.limit.channel);
+    const { min } = this.envelopes.get(this.layout.limit.channel);
     this.#limitIsNear = Math.max(-low, high) > this.layout.limit.near * min;
-    return this.#limitIsNear ? [Math.min(low, -max), Math.max(high, max)] : [low, high];
+    return this.#limitIsNear ? [Math.min(low, -min), Math.max(high, min)] : [low, high];
   }
 
   #compare({ channel, onlyWhenUnlike, side }) {

@@ -7,9 +7,13 @@ export function niceStep(rough) {
   return (mantissa <= 1 ? 1 : mantissa <= 2 ? 2 : mantissa <= 5 ? 5 : 10) * power;
 }
 
-/** @returns {number[]} multiples of a nice step inside [low, high], at most about `count` */
+/** @returns {number[]} multiples of a nice step inside [low, high]: about `count`, and three where that is possible */
 export function niceTicks(low, high, count) {
-  const step = niceStep((high - low) / Math.max(1, count));
+  const coarse = multiples(low, high, niceStep((high - low) / Math.max(1, count)));
+  return coarse.length >= 3 ? coarse : multiples(low, high, niceStep((high - low) / (2 * Math.max(1, count))));
+}
+
+function multiples(low, high, step) {
   const ticks = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1) ticks.push(Number((i * step).toPrecision(12)));
   return ticks;

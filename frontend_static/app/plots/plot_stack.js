@@ -96,7 +96,8 @@ export class PlotStack {
 
   /** Changes when following the newest sample moves the picture by a pixel. */
   #moved() {
-    const { store } = this.session;
+    const { store, snapshot } = this.session;
+    if (snapshot?.state !== "running") return store.version;
     this.timeWindow.pixels = this.#charts[0].pixels;
     const perPixel = this.timeWindow.seconds / this.timeWindow.pixels;
     return `${store.epoch}:${store.length > 0}:${Math.ceil(store.lastTime / perPixel)}`;

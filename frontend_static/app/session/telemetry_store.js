@@ -1,3 +1,5 @@
+const RESTART_SAMPLES = 1000; // live data so far back come from another run of the server
+
 /**
  * The last minute of telemetry: one sliding typed array a channel, handed out as views.
  *
@@ -72,7 +74,9 @@ export class TelemetryStore extends EventTarget {
 
   /** Append what is new in a frame. @param {import("./telemetry_frame.js").TelemetryFrame} frame */
   accept(frame) {
-    const restarted = !frame.isHistory && this.#nextSequence !== null && frame.nextSequence < this.#nextSequence;
+    const behind = this.#nextSequence === null ? -1 : this.#nextSequence - frame.nextSequence;
+    if (frame.isHistory && behind >= 0) return;
+    const restarted = behind > RESTART_SAMPLES;
     if (restarted || (this.epoch !== null && frame.epoch !== this.epoch)) this.clear({ restarted: true });
     this.epoch = frame.epoch;
     let skip = 0;

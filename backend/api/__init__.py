@@ -1,0 +1,1 @@
+"""REST and websocket: one router a resource; validate, call, answer."""

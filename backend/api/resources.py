@@ -1,0 +1,151 @@
+"""Schema, scenarios, simulations, presets and the session's commands over REST."""
+
+import json
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Body, Query, Request, Response
+from pydantic import ValidationError
+
+from backend.compute.pool import JobFailed, JobRefused, Pool
+from backend.presets.store import PresetStore
+from backend.problem import Problem, from_validation, refused
+from backend.session.arguments import Named
+from backend.session.session import Session
+from vssea_core import __version__
+from vssea_core.channels import CHANNELS, LIMITS
+from vssea_core.control.tuning import Tuning
+from vssea_core.scenario import Scenario
+from vssea_core.scenarios import SCENARIOS
+
+SIMULATION_LIMIT_S = 60.0
+LARGEST_BODY = 1_000_000
+Document = dict[str, Any]
+BY = "REST"
+
+
+async def body_of(request: Request) -> Any:
+    """Return the JSON body of a request, {} if it is empty. Raises Problem."""
+    parts, size = [], 0
+    async for part in request.stream():
+        size += len(part)
+        if size > LARGEST_BODY:
+            raise Problem(413, "Too large", f"The body is larger than {LARGEST_BODY} bytes; expected one JSON document.")
+        parts.append(part)
+    content = b"".join(parts)
+    if not content.strip():
+        return {}
+    try:
+        return json.loads(content)
+    except (ValueError, RecursionError) as error:
+        raise Problem(400, "Not JSON", f"The body is not JSON: {error}.") from error
+
+
+def resources(session: Session, pool: Pool, store: PresetStore) -> APIRouter:
+    """Return the REST routes."""
+    router = APIRouter(prefix="/api")
+
+    @router.get("/health")
+    def health() -> Document:
+        """Say that the server answers, and the session's state."""
+        return {"status": "ok", "version": __version__, "session": session.state}
+
+    @router.get("/schema")
+    def schema() -> Document:
+        """JSON schema of the scenario with units, ranges and sources; channels; commands; limits."""
+        return {
+            "scenario": Scenario.model_json_schema(),
+            "channels": [channel._asdict() for channel in CHANNELS],
+            "commands": session.command_names(),
+            "limits": [limit._asdict() for limit in LIMITS],
+        }
+
+    @router.get("/scenarios")
+    def scenarios() -> list[Document]:
+        """Return the ready scenarios."""
+        return [scenario.model_dump(mode="json") for scenario in SCENARIOS.values()]
+
+    @router.get("/scenarios/{name}")
+    def scenario(name: str) -> Document:
+        """Return one ready scenario."""
+        if name not in SCENARIOS:
+            raise Problem(404, "No such scenario", f"There is no scenario {name!r}; known: {', '.join(SCENARIOS)}.")
+        return SCENARIOS[name].model_dump(mode="json")
+
+    @router.post("/simulate", openapi_extra=_body(Scenario.__name__))
+    async def simulate(
+        request: Request,
+        trajectory: Annotated[Literal["none", "json", "csv", "binary"], Query()] = "none",
+        every: Annotated[int, Query(ge=1, le=100_000)] = 1,
+        allow_unstable: Annotated[bool, Query()] = False,
+    ) -> Response:
+        """Simulate a scenario: metrics, and its trajectory as JSON, CSV or binary frames, every `every`-th sample."""
+        document = await body_of(request)
+        try:
+            asked = Scenario.model_validate_json(json.dumps(document))
+        except ValidationError as error:
+            raise from_validation(error, Scenario) from error
+        try:
+            media_type, content = await pool.simulation.run(
+                "simulate_scenario", asked, trajectory, every, allow_unstable, time_limit_s=SIMULATION_LIMIT_S
+            )
+        except JobRefused as refusal:
+            sentence = str(refusal)
+            raise refused(f"{sentence[:1].upper()}{sentence[1:]}.") from refusal
+        except JobFailed as failure:
+            raise Problem(503, "Not computed", f"The simulation could not be computed: {failure}.") from failure
+        return Response(content, media_type=media_type)
+
+    @router.get("/session")
+    def snapshot() -> Document:
+        """Return what the live session is doing."""
+        return session.snapshot() | {"scenario": session.document()["scenario"]}
+
+    @router.get("/session/events")
+    def events(last: Annotated[int, Query(ge=1, le=500)] = 100) -> list[Document]:
+        """Return the newest events, oldest first."""
+        return session.log.last(last)
+
+    @router.post("/session/{command}", openapi_extra=_body("arguments of the command"))
+    async def command(command: str, request: Request) -> Document:
+        """Run a command of the live session; docs/protocol.md lists them."""
+        return await session.command(command, await body_of(request), BY)
+
+    @router.get("/presets")
+    def presets() -> list[Document]:
+        """Return the saved tunings, newest first."""
+        return [preset.document() for preset in store.list()]
+
+    @router.put("/presets/{name}")
+    async def save(name: str, body: Annotated[Document, Body()]) -> Document:
+        """Save the tuning in force, or the body's `tuning`, under a name."""
+        checked = _name(name)
+        if "tuning" not in body:
+            return await session.command("save_preset", {"name": checked}, BY)
+        try:
+            tuning = Tuning.model_validate_json(json.dumps(body["tuning"]))
+        except ValidationError as error:
+            raise from_validation(error, Tuning, "tuning") from error
+        return await session.save_tuning(checked, tuning, BY)
+
+    @router.delete("/presets/{name}")
+    async def delete(name: str) -> Document:
+        """Delete a saved tuning."""
+        return await session.command("delete_preset", {"name": name}, BY)
+
+    @router.post("/presets/{name}/apply")
+    async def apply(name: str) -> Document:
+        """Use a saved tuning in the live session."""
+        return await session.command("apply_preset", {"name": name}, BY)
+
+    return router
+
+
+def _name(name: str) -> str:
+    try:
+        return Named(name=name).name
+    except ValidationError as error:
+        raise from_validation(error, Named) from error
+
+
+def _body(title: str) -> Document:
+    return {"requestBody": {"content": {"application/json": {"schema": {"type": "object", "title": title}}}}}

@@ -1,0 +1,61 @@
+"""Composition root: settings in, application out."""
+
+import gc
+import importlib.resources
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+from fastapi import FastAPI
+from starlette.middleware import Middleware
+from starlette.staticfiles import StaticFiles
+
+from backend.api.documentation import documentation
+from backend.api.guard import Guard
+from backend.api.live import live
+from backend.api.problems import add_problem_handlers
+from backend.api.resources import resources
+from backend.compute.pool import Pool
+from backend.presets.store import PresetStore
+from backend.scene.process import SceneProcess
+from backend.scene.relay import scene_routes
+from backend.session.session import Session
+from backend.settings import Settings
+from vssea_core import __version__
+
+
+def create_app(settings: Settings) -> FastAPI:
+    """Return the whole application; its processes start and end with it."""
+    store = PresetStore(settings.data_dir)
+    pool = Pool()
+    session = Session(settings, pool, store)
+    scene = SceneProcess(session.ring_name)
+
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        session.start()
+        if settings.scene:
+            scene.start()
+        gc.collect()
+        gc.freeze()  # a collection of all that was imported would stall STOP for tens of milliseconds
+        yield
+        await scene.stop()
+        await session.close()
+        await pool.stop()
+        store.close()
+
+    app = FastAPI(
+        title="VSSEA", version=__version__, lifespan=lifespan, docs_url=None, redoc_url=None,
+        description="Robust position control of a variable stiffness series elastic actuator: simulate and tune live.",
+        middleware=[Middleware(Guard, settings=settings)],
+    )  # fmt: skip
+    add_problem_handlers(app)
+    app.include_router(resources(session, pool, store))
+    app.include_router(live(session))
+    app.include_router(documentation())
+    # The guard has checked Host and Origin of every websocket before this.
+    app.router.routes.extend(scene_routes(lambda: scene.port, lambda _: True, lambda: scene.sentence))
+    static = Path(str(importlib.resources.files("frontend_static")))
+    app.mount("/", StaticFiles(directory=static, html=True), name="page")
+    app.state.session = session
+    return app

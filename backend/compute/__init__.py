@@ -1,0 +1,1 @@
+"""Worker processes: everything that calculates or encodes much."""

@@ -1,0 +1,80 @@
+"""What the workers can do. Imports the design tools and the compiler; the web process never imports this module."""
+
+import csv
+import io
+import json
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from backend.telemetry.frames import frames
+from backend.telemetry.ring import COLUMNS, EPOCH, WIDTH, Piece
+from vssea_core.analysis.refusal import unstable_because
+from vssea_core.channels import CHANNELS, INDEX
+from vssea_core.control.prepared import prepare
+from vssea_core.control.tuning import Tuning
+from vssea_core.scenario import Scenario
+from vssea_core.simulation.metrics import limit_shares, metrics
+from vssea_core.simulation.run import simulate
+from vssea_core.simulation.trajectory import Trajectory
+
+
+def prepare_tuning(scenario: Scenario) -> NDArray[np.float64]:
+    """Return the numbers of the scenario's tuning. Raises ValueError if its own sampled loop is unstable."""
+    refuse_unstable(scenario)
+    return prepare(scenario.tuning, scenario.timing.sample_time_s)
+
+
+def refuse_unstable(scenario: Scenario) -> None:
+    """Raise ValueError with the reason and a remedy if the tuning is unstable at a stiffness the scenario commands."""
+    reference = scenario.stiffness_reference
+    asked = {reference.stiffness, reference.target} if reference.kind == "move" else {reference.stiffness}
+    for stiffness in sorted(asked):
+        tuning: Tuning = scenario.tuning
+        sentence = unstable_because(tuning, scenario.timing, scenario.actuator.motor.torque_lag_s, stiffness)
+        if sentence:
+            raise ValueError(sentence)
+
+
+def simulate_scenario(scenario: Scenario, form: str, every: int, allow_unstable: bool) -> tuple[str, bytes]:
+    """Return media type and body of a simulation: form `none`, `json`, `csv` or `binary`, every `every`-th sample."""
+    if not allow_unstable:
+        refuse_unstable(scenario)
+    trajectory = simulate(scenario)
+    thinned = trajectory.rows[::every]
+    if form == "csv":
+        return "text/csv; charset=utf-8", _as_csv(thinned)
+    if form == "binary":
+        return "application/octet-stream", _as_frames(thinned, trajectory.period_s * every)
+    answer = summary(scenario, trajectory)
+    if form == "json":
+        answer["trajectory"] = {channel.name: thinned[:, INDEX[channel.name]].tolist() for channel in CHANNELS}
+        answer["period_s"] = trajectory.period_s * every
+    return "application/json", json.dumps(answer, ensure_ascii=False, allow_nan=False).encode()
+
+
+def summary(scenario: Scenario, trajectory: Trajectory) -> dict[str, Any]:
+    """Return the metrics, the active limits and how the run ended."""
+    return {
+        "name": scenario.name,
+        "samples": len(trajectory),
+        "ending": trajectory.ending,
+        "metrics": metrics(trajectory.rows),
+        "limits": limit_shares(trajectory.rows),
+    }
+
+
+def _as_csv(rows: NDArray[np.float64]) -> bytes:
+    text = io.StringIO()
+    writer = csv.writer(text)
+    writer.writerow([f"{channel.name} [{channel.unit}]" if channel.unit else channel.name for channel in CHANNELS])
+    writer.writerows(rows.tolist())
+    return text.getvalue().encode()
+
+
+def _as_frames(rows: NDArray[np.float64], period_s: float) -> bytes:
+    samples = np.zeros((len(rows), COLUMNS))
+    samples[:, :WIDTH] = rows
+    samples[:, EPOCH] = 1
+    return b"".join(frames(Piece(0, samples), period_s))

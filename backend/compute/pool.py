@@ -1,0 +1,101 @@
+"""Workers as the web process sees them: awaited, time-limited, replaced when they die."""
+
+import asyncio
+import logging
+from multiprocessing.process import BaseProcess
+from typing import Any
+
+from backend.processes import CONTEXT, started
+
+logger = logging.getLogger(__name__)
+START_LIMIT_S = 120.0
+ENTRY = "backend.compute.worker:run_worker"
+
+
+class JobRefused(ValueError):
+    """The job says that its input makes no sense; the text is a sentence for the user."""
+
+
+class JobFailed(RuntimeError):
+    """The worker died, ran out of time, or failed in a way that is not the user's doing."""
+
+
+class Worker:
+    """One worker process with a queue of its own."""
+
+    def __init__(self, name: str, priority: int = 10, entry: str = ENTRY) -> None:
+        self._name, self._priority, self._entry = name, priority, entry
+        self._turn = asyncio.Lock()
+        self._process: BaseProcess | None = None
+
+    async def start(self) -> None:
+        """Start the process and wait until its kernels are compiled."""
+        async with self._turn:
+            await self._ready()
+
+    async def run(self, job: str, *arguments: Any, time_limit_s: float = 60.0) -> Any:
+        """Return what `job` returns. Raises JobRefused or JobFailed; a cancelled or overdue job ends with its process."""
+        async with self._turn:
+            await self._ready()
+            return await self._answer((job, arguments), time_limit_s)
+
+    async def stop(self) -> None:
+        """End the process."""
+        await self._end()
+
+    async def _ready(self) -> None:
+        if self._process is not None and self._process.is_alive():
+            return
+        self._pipe, theirs = CONTEXT.Pipe()
+        self._process = await asyncio.to_thread(started, self._name, self._entry, theirs, self._priority)
+        theirs.close()
+        await self._answer(None, START_LIMIT_S)
+
+    async def _answer(self, job: tuple[str, tuple[Any, ...]] | None, time_limit_s: float) -> Any:
+        pipe = self._pipe
+
+        def exchange() -> Any:
+            if job is not None:
+                pipe.send(job)
+            return pipe.recv()
+
+        try:
+            async with asyncio.timeout(time_limit_s):
+                kind, content = await asyncio.to_thread(exchange)
+        except (EOFError, OSError) as broken:
+            await self._end()
+            raise JobFailed(f"the {self._name} process ended unexpectedly; try again") from broken
+        except TimeoutError as late:
+            await self._end()
+            raise JobFailed(f"this took longer than {time_limit_s:g} s and was given up; shorten the scenario") from late
+        except asyncio.CancelledError:
+            await asyncio.shield(self._end())
+            raise
+        if kind == "refused":
+            raise JobRefused(content)
+        if kind == "failed":
+            logger.error("job %s failed:\n%s", job and job[0], content)
+            raise JobFailed("an internal error; the server's log has the details")
+        return content
+
+    async def _end(self) -> None:
+        process, self._process = self._process, None
+        if process is None:
+            return
+        process.terminate()
+        await asyncio.to_thread(process.join, 2.0)
+        if process.exitcode is None:
+            process.kill()
+        self._pipe.close()
+
+
+class Pool:
+    """A worker for the designs that live changes wait for, and one for simulations, so that neither waits for the other."""
+
+    def __init__(self) -> None:
+        self.design = Worker("vssea design", priority=0)
+        self.simulation = Worker("vssea simulation", priority=10)
+
+    async def stop(self) -> None:
+        """End both."""
+        await asyncio.gather(self.design.stop(), self.simulation.stop())

@@ -1,0 +1,1 @@
+"""Named tunings and the last one, kept over restarts."""

@@ -1,0 +1,50 @@
+"""Arguments of the commands, as both REST and websocket take them."""
+
+from typing import Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from vssea_core.scenario import Scenario
+
+PresetName = Field(min_length=1, max_length=80, pattern=r"^[^/\\\x00-\x1f]+$", description="Name of a preset.")
+
+
+class Arguments(BaseModel):
+    """Arguments of a command; unknown names are refused."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+
+class Nothing(Arguments):
+    """No arguments."""
+
+
+class Named(Arguments):
+    """A preset's name."""
+
+    name: str = PresetName
+
+
+class Samples(Arguments):
+    """How far to step."""
+
+    samples: int = Field(1, ge=1, le=10_000, strict=True, description="Samples to advance.")
+
+
+class Pace(Arguments):
+    """How fast time runs."""
+
+    factor: float = Field(ge=0.05, le=4.0, strict=True, description="Real-time factor asked.")
+
+
+class Loading(Arguments):
+    """Which scenario to load: a ready one by name, or a whole document."""
+
+    name: str | None = Field(None, max_length=80)
+    scenario: Scenario | None = None
+
+    @model_validator(mode="after")
+    def _one_of_them(self) -> Self:
+        if (self.name is None) == (self.scenario is None):
+            raise ValueError("give either a name or a scenario")
+        return self

@@ -1,0 +1,97 @@
+"""The control process as the web process sees it: started, told, listened to, and noticed when it dies."""
+
+import asyncio
+from collections.abc import Callable
+from itertools import count
+from multiprocessing.process import BaseProcess
+
+from backend.loop.messages import Command, Done, Ready, Refused, Report
+from backend.processes import CONTEXT, started
+from backend.problem import Problem, refused
+
+ENTRY = "backend.loop.process:run_control_process"
+ANSWER_LIMIT_S = 2.0
+LEAVE_LIMIT_S = 3.0
+
+
+class ControlLink:
+    """Sends commands and awaits what became of them; reports of the state go to `listener`, its end to `lost`."""
+
+    def __init__(self, listener: Callable[[Report], None], lost: Callable[[], None]) -> None:
+        self._listener, self._lost = listener, lost
+        self._numbers = count(1)
+        self._waiting: dict[int, asyncio.Future[Done]] = {}
+        self._process: BaseProcess | None = None
+        self.ready = asyncio.Event()
+
+    async def start(self, ring_name: str, flag_name: str) -> None:
+        """Start the process; `ready` is set once its kernels are compiled."""
+        self._pipe, theirs = CONTEXT.Pipe()
+        arguments = (ring_name, flag_name, theirs)
+        self._process = await asyncio.to_thread(started, "vssea control", ENTRY, *arguments)
+        theirs.close()
+        asyncio.get_running_loop().add_reader(self._pipe.fileno(), self._receive)
+
+    async def command(self, command: Command) -> Done:
+        """Return when the command took effect. Raises Problem if it was refused or the process does not answer."""
+        number = next(self._numbers)
+        future: asyncio.Future[Done] = asyncio.get_running_loop().create_future()
+        self._waiting[number] = future
+        try:
+            self._pipe.send((number, command))
+            async with asyncio.timeout(ANSWER_LIMIT_S):
+                return await future
+        except (OSError, TimeoutError) as error:
+            raise _silent() from error
+        finally:
+            self._waiting.pop(number, None)
+
+    @property
+    def ended(self) -> bool:
+        """Whether the process has ended by itself."""
+        return self._process is not None and self._process.exitcode is not None
+
+    async def stop(self) -> None:
+        """Close the pipe, which ends the process, and make sure that it ended."""
+        process, self._process = self._process, None
+        if process is None:
+            return
+        self._close()
+        await asyncio.to_thread(process.join, LEAVE_LIMIT_S)
+        if process.exitcode is None:
+            process.kill()
+
+    def _receive(self) -> None:
+        try:
+            while self._pipe.poll():
+                self._take(self._pipe.recv())
+        except (EOFError, OSError):
+            self._close()
+            for future in self._waiting.values():
+                if not future.done():
+                    future.set_exception(_silent())
+            if self._process is not None:
+                self._lost()
+
+    def _take(self, report: Report) -> None:
+        if isinstance(report, Ready):
+            self.ready.set()
+        elif isinstance(report, Done | Refused):
+            future = self._waiting.get(report.number)
+            if future is None or future.done():
+                return
+            if isinstance(report, Done):
+                future.set_result(report)
+            else:
+                future.set_exception(refused(f"{report.sentence[:1].upper()}{report.sentence[1:]}."))
+            return
+        self._listener(report)
+
+    def _close(self) -> None:
+        if not self._pipe.closed:
+            asyncio.get_running_loop().remove_reader(self._pipe.fileno())
+            self._pipe.close()
+
+
+def _silent() -> Problem:
+    return Problem(503, "No answer", "The control process does not answer; restart the server if this stays so.")

@@ -1,0 +1,67 @@
+"""What a session says in words: its state with the reason, and each change."""
+
+from typing import Any
+
+from backend.loop.messages import State
+from vssea_core.fields import Part
+from vssea_core.scenario import Scenario
+from vssea_core.signals.documents import Reference
+
+
+def state_sentence(state: State, reason: str | None, time_s: float, by: str | None, scenario: Scenario) -> str:
+    """Return what the session is doing, and why."""
+    following = reference_words(scenario.reference)
+    match state:
+        case "starting":
+            return "Starting: the control kernel is being compiled (some seconds at the first start)"
+        case "ready":
+            return "Ready at t = 0. Press Run to start"
+        case "running":
+            return f"Running, {following}"
+        case "paused":
+            return f"Paused at {time_s:.3f} s, {following}"
+        case "stopped":
+            return f"Stopped by {by or 'request'} at {time_s:.1f} s: motor torque off, stiffness held. Reset to go on"
+        case "fault":
+            return f"Fault: {reason}"
+
+
+def reference_words(reference: Reference) -> str:
+    """Return the reference as a participle clause."""
+    match reference.kind:
+        case "sine":
+            return f"tracking sine {reference.amplitude:.2f} rad, {reference.frequency_hz:.2f} Hz"
+        case "move":
+            return f"moving {reference.origin:.2f} to {reference.target:.2f} rad in {reference.duration_s:.2f} s"
+        case "step":
+            return f"stepping {reference.origin:.2f} to {reference.target:.2f} rad"
+
+
+def change_words(scenario: Scenario, path: str, before: Any, after: Any) -> str:
+    """Return one change as `symbol old → new unit`."""
+    label, unit = _label(scenario, path)
+    return f"{label} {_value(before)} → {_value(after)}{' ' + unit if unit else ''}"
+
+
+def _label(scenario: Scenario, path: str) -> tuple[str, str]:
+    here: Any = scenario
+    *parents, last = path.split(".")
+    for name in parents:
+        here = here[int(name)] if isinstance(here, tuple) else getattr(here, name, None)
+    if last == "kind":
+        return parents[-1].replace("_", " "), ""
+    info = type(here).model_fields.get(last) if isinstance(here, Part) else None
+    if info is None:
+        return path, ""
+    extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
+    return str(extra.get("symbol") or info.title or last), str(extra.get("unit") or "")
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, bool) or value is None:
+        return {True: "on", False: "off", None: "none"}[value]
+    if isinstance(value, (int, float)):
+        return f"{value:.4g}"
+    if isinstance(value, (list, dict)):
+        return f"{len(value)} terms" if isinstance(value, list) else "…"
+    return str(value).replace("_", " ")

@@ -1,0 +1,396 @@
+"""The live session: every command is one method here; REST and websocket call the same."""
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable
+from itertools import count
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from backend.compute.pool import JobFailed, JobRefused, Pool
+from backend.loop import messages
+from backend.presets.store import PresetStore
+from backend.session.arguments import Loading, Named, Nothing, Pace, Samples
+from backend.session.changes import Changes, differences, with_changes
+from backend.session.control_link import ControlLink
+from backend.session.events import Event, EventLog, Kind
+from backend.session.fault_snapshot import save_fault_snapshot
+from backend.session.health import Health
+from backend.session.limit_watch import LimitWatch
+from backend.session.notes import ChangeNotes, Note
+from backend.problem import Problem, from_validation, refused
+from backend.session.sentences import change_words, state_sentence
+from backend.settings import Settings
+from backend.telemetry.ring import EPOCH, Ring, RingReader
+from backend.telemetry.stop_flag import StopFlag
+from vssea_core.channels import INDEX
+from vssea_core.control.tuning import Tuning
+from vssea_core.scenario import Scenario
+from vssea_core.scenarios import SCENARIOS
+
+logger = logging.getLogger(__name__)
+
+WATCH_S = 0.1
+STATE_EVERY = 5  # watches between two state messages
+SAVE_AFTER_S = 1.0
+Message = dict[str, Any]
+EVENT_KINDS: dict[str, Kind] = {
+    "tuning": "tuning", "reference": "reference", "stiffness_reference": "stiffness", "disturbances": "disturbance",
+}  # fmt: skip
+
+
+class Session:
+    """One live session on a simulated rig."""
+
+    def __init__(self, settings: Settings, pool: Pool, store: PresetStore) -> None:
+        self._settings, self._pool, self._store = settings, pool, store
+        self.scenario: Scenario = SCENARIOS[settings.scenario]
+        self.preset: str | None = None
+        self.tuning_id = 0
+        self.state: messages.State = "starting"
+        self._reason: str | None = None
+        self._stopped_by: str | None = None
+        self.epoch, self._time_s, self._pace = 0, 0.0, 1.0
+        self._segment, self._flag = Ring(), StopFlag()
+        self.ring_name = self._segment.name
+        self.ring = RingReader(self._segment.name)
+        self._health, self._limits = Health(self.ring), LimitWatch(self.ring)
+        self.listeners: set[Callable[[Message], None]] = set()
+        self.log = EventLog(self._tell_event)
+        self._notes = ChangeNotes(self._tell_change)
+        self._link = ControlLink(self._on_report, self._on_lost)
+        self._turn = asyncio.Lock()
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._save_timer: asyncio.TimerHandle | None = None
+        self._commands: dict[str, tuple[type[BaseModel], Callable[[Any, str], Awaitable[Message]]]] = {
+            "tune": (Changes, self.tune),
+            "set_reference": (Changes, self.set_reference),
+            "set_stiffness": (Changes, self.set_stiffness),
+            "set_disturbances": (Changes, self.set_disturbances),
+            "load_scenario": (Loading, self.load_scenario),
+            "pause": (Nothing, self.pause),
+            "resume": (Nothing, self.resume),
+            "step": (Samples, self.step),
+            "reset": (Nothing, self.reset),
+            "set_pace": (Pace, self.set_pace),
+            "stop": (Nothing, self.stop),
+            "save_preset": (Named, self.save_preset),
+            "apply_preset": (Named, self.apply_preset),
+            "delete_preset": (Named, self.delete_preset),
+        }
+
+    # ---- life
+
+    def start(self) -> None:
+        """Start the control process and the workers in the background; the state says when they are ready."""
+        self._spawn(self._begin())
+        self._spawn(self._watch())
+
+    async def close(self) -> None:
+        """Save the last tuning and end the control process."""
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        if self._save_timer is not None:
+            self._save_timer.cancel()
+            await asyncio.to_thread(self._store.save_last, self.scenario, self.preset)
+        await self._link.stop()
+        self.ring.close()
+        self._flag.close()
+        self._segment.close()
+
+    async def _begin(self) -> None:
+        last = await asyncio.to_thread(self._store.last)
+        if last is not None:
+            self.scenario, self.preset = last.scenario, last.preset
+        await self._link.start(self.ring_name, self._flag.name)
+        await self._link.ready.wait()
+        try:
+            await self._load(self.scenario)
+        except Problem as problem:
+            logger.warning("the last tuning cannot be used: %s", problem.detail)
+            self.scenario, self.preset = SCENARIOS[self._settings.scenario], None
+            await self._load(self.scenario)
+            self._note("scenario", f"The last tuning cannot be used: {problem.detail} Loaded {self.scenario.name}", "server")
+        else:
+            if last is not None:
+                self._note("scenario", f"{self.scenario.name} and its last tuning are back", "server")
+
+    async def _watch(self) -> None:
+        """Tell of limits as they begin, and of the state twice a second."""
+        for turn in count(1):
+            await asyncio.sleep(WATCH_S)
+            for epoch, time_s, sentence in self._limits.begun():
+                self.log.add("limit", sentence, "rig", epoch, time_s, "warning")
+            if turn % STATE_EVERY == 0 and self.listeners:
+                self._tell_state()
+
+    def _spawn(self, work: Awaitable[None]) -> None:
+        task = asyncio.ensure_future(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._finished)
+
+    def _finished(self, task: "asyncio.Task[None]") -> None:
+        self._tasks.discard(task)
+        if not task.cancelled() and task.exception() is not None:
+            logger.error("a task of the session failed", exc_info=task.exception())
+            self._reason = f"{task.exception()}. Restart the server; its log has the details."
+            self.state = "fault"
+            self._tell_state()
+
+    # ---- what pages see
+
+    def snapshot(self) -> Message:
+        """Return the state in words and figures, as docs/protocol.md has it."""
+        period_s = self.scenario.timing.sample_time_s
+        figures = self._health.figures(period_s, self.epoch)
+        newest = self.ring.latest()
+        if newest is not None and newest[EPOCH] == self.epoch:
+            self._time_s = max(self._time_s, float(newest[INDEX["time"]]))
+        return {
+            "state": self.state,
+            "sentence": state_sentence(self.state, self._reason, self._time_s, self._stopped_by, self.scenario),
+            "reason": self._reason,
+            "rig": {"kind": "simulated", "label": "simulated rig"},
+            "time_s": self._time_s,
+            "epoch": self.epoch,
+            "tuning_id": self.tuning_id,
+            "pace": {"asked": self._pace, "achieved": figures.pop("achieved")},
+            "pages": len(self.listeners),
+            **figures,
+        }
+
+    def document(self, by: str = "server") -> Message:
+        """Return the live scenario and its preset."""
+        preset = None
+        if self.preset is not None:
+            saved = self._store.known(self.preset)
+            preset = saved and saved.document()
+        return {
+            "type": "document", "scenario": self.scenario.model_dump(mode="json"), "preset": preset,
+            "tuning_id": self.tuning_id, "by": by,
+        }  # fmt: skip
+
+    def _tell(self, message: Message) -> None:
+        for listener in list(self.listeners):
+            listener(message)
+
+    def _tell_state(self) -> None:
+        self._tell({"type": "state", "snapshot": self.snapshot()})
+
+    def _tell_event(self, event: Event) -> None:
+        self._tell({"type": "event", "event": event.document()})
+
+    def _tell_change(self, part: str, by: str, note: Note) -> None:
+        words = [change_words(self.scenario, f"{part}.{path}", *pair) for path, pair in note.changes.items()]
+        self.log.add(EVENT_KINDS[part], ", ".join(words), by, note.epoch, note.time_s)
+
+    def _note(self, kind: Kind, text: str, by: str) -> None:
+        self.log.add(kind, text, by, self.epoch, self._time_s)
+
+    # ---- reports of the control process
+
+    def _on_report(self, report: messages.Report) -> None:
+        if not isinstance(report, messages.Changed):
+            return
+        self.state, self._reason = report.state, report.reason
+        self.epoch, self._time_s = report.epoch, report.time_s
+        sentence = state_sentence(self.state, self._reason, self._time_s, self._stopped_by, self.scenario)
+        severity = "fault" if self.state == "fault" else "warning" if self.state == "stopped" else "info"
+        by = self._stopped_by or "server" if self.state == "stopped" else "session"
+        self.log.add("fault" if self.state == "fault" else "state", sentence, by, self.epoch, self._time_s, severity)
+        self._tell_state()
+        if self.state == "fault":
+            self._spawn(self._keep_fault())
+
+    async def _keep_fault(self) -> None:
+        period_s = self.scenario.timing.sample_time_s
+        file = await asyncio.to_thread(
+            save_fault_snapshot, self._settings.data_dir, self.ring.last(round(2.0 / period_s)), self.scenario, self._reason
+        )
+        self._note("fault", f"The last 2 s before the fault are kept in {file}", "server")
+
+    def _on_lost(self) -> None:
+        self.state, self._reason = "fault", "the control process ended unexpectedly. Press Reset to start it anew."
+        self.log.add("fault", f"Fault: {self._reason}", "server", self.epoch, self._time_s, "fault")
+        self._tell_state()
+
+    # ---- commands
+
+    async def command(self, name: str, arguments: Any, by: str) -> Message:
+        """Run the command `name` for page `by`. Raises Problem."""
+        entry = self._commands.get(name)
+        if entry is None:
+            known = ", ".join(self._commands)
+            raise Problem(404, "Unknown command", f"There is no command {name!r}; known: {known}.")
+        model, method = entry
+        try:
+            validated = model.model_validate(arguments or {})
+        except ValidationError as error:
+            raise from_validation(error, model, consequence="Nothing was changed.") from error
+        return await method(validated, by)
+
+    def command_names(self) -> list[str]:
+        """Return the names of all commands."""
+        return list(self._commands)
+
+    async def stop(self, _: Nothing, by: str) -> Message:
+        """Motor torque off at once, stiffness held. Passes every queue: it only writes the flag."""
+        self._flag.raise_()
+        if self.state not in ("stopped", "fault"):
+            self._stopped_by = by
+        return {}
+
+    async def tune(self, asked: Changes, by: str) -> Message:
+        """Change the tuning; refused, and the old one kept, if its own sampled loop is unstable."""
+        return await self._change("tuning", asked, by, self._install)
+
+    async def set_reference(self, asked: Changes, by: str) -> Message:
+        """Follow another reference, without a jump."""
+        return await self._change("reference", asked, by, lambda new: self._link.command(messages.SetReference(new.reference)))
+
+    async def set_stiffness(self, asked: Changes, by: str) -> Message:
+        """Command another stiffness; refused if the tuning would be unstable there."""
+
+        async def command(new: Scenario) -> messages.Done:
+            await self._prepared(new)
+            return await self._link.command(messages.SetStiffness(new.stiffness_reference))
+
+        return await self._change("stiffness_reference", asked, by, command)
+
+    async def set_disturbances(self, asked: Changes, by: str) -> Message:
+        """Apply other disturbances, at once."""
+        return await self._change(
+            "disturbances", asked, by, lambda new: self._link.command(messages.SetDisturbances(new.disturbances))
+        )
+
+    async def _change(
+        self, part: str, asked: Changes, by: str, apply: Callable[[Scenario], Awaitable[messages.Done]]
+    ) -> Message:
+        async with self._turn:
+            old = self.scenario
+            new = with_changes(old, part, asked)
+            found = differences(old.model_dump(mode="json")[part], new.model_dump(mode="json")[part])
+            if found:
+                done = await apply(new)
+                self.scenario = new
+                self._notes.add(part, by, found, self.epoch, done.time_s)
+                self._tell(self.document(by))
+                self._save_soon()
+            return {"tuning_id": self.tuning_id, "applied": {path: after for path, (_, after) in found.items()}, "notes": []}
+
+    async def _install(self, new: Scenario) -> messages.Done:
+        prepared = await self._prepared(new)
+        done = await self._link.command(messages.Install(new.tuning, prepared, self.tuning_id + 1))
+        self.tuning_id += 1
+        return done
+
+    async def _prepared(self, scenario: Scenario) -> Any:
+        try:
+            return await self._pool.design.run("prepare_tuning", scenario)
+        except JobRefused as refusal:
+            sentence = str(refusal)
+            raise refused(f"{sentence[:1].upper()}{sentence[1:]}. The old tuning keeps running.") from refusal
+        except JobFailed as failure:
+            raise Problem(503, "Not computed", f"The tuning could not be computed: {failure}.") from failure
+
+    async def load_scenario(self, asked: Loading, by: str) -> Message:
+        """Restart with another scenario, at t = 0."""
+        scenario = asked.scenario or SCENARIOS.get(asked.name or "")
+        if scenario is None:
+            raise Problem(404, "No such scenario", f"There is no scenario {asked.name!r}; known: {', '.join(SCENARIOS)}.")
+        async with self._turn:
+            await self._load(scenario)
+            self.preset = None
+            self._tell(self.document(by))
+            self._save_soon()
+        self._note("scenario", f"scenario {scenario.name} loaded", by)
+        return {"tuning_id": self.tuning_id}
+
+    async def _load(self, scenario: Scenario) -> None:
+        prepared = await self._prepared(scenario)
+        run = self.state in ("starting", "running")
+        await self._link.command(messages.Load(scenario, prepared, self.tuning_id + 1, run))
+        self.tuning_id += 1
+        self.scenario = scenario
+        self._tell(self.document())
+
+    async def pause(self, _: Nothing, by: str) -> Message:
+        """Hold time."""
+        await self._link.command(messages.Pause())
+        return {}
+
+    async def resume(self, _: Nothing, by: str) -> Message:
+        """Let time run."""
+        await self._link.command(messages.Resume())
+        return {}
+
+    async def step(self, asked: Samples, by: str) -> Message:
+        """Advance a paused session."""
+        done = await self._link.command(messages.Step(asked.samples))
+        return {"time_s": done.time_s}
+
+    async def reset(self, _: Nothing, by: str) -> Message:
+        """Back to t = 0; the only way out of a stop or a fault."""
+        if self._link.ended:
+            self._link.ready.clear()
+            await self._link.start(self.ring_name, self._flag.name)
+            await self._link.ready.wait()
+            await self._load(self.scenario)
+        else:
+            await self._link.command(messages.Reset())
+        self._stopped_by = None
+        self._note("state", "reset to t = 0", by)
+        return {}
+
+    async def set_pace(self, asked: Pace, by: str) -> Message:
+        """Ask for another real-time factor."""
+        await self._link.command(messages.SetPace(asked.factor))
+        self._pace = asked.factor
+        self._note("state", f"real-time factor {asked.factor:g}", by)
+        self._tell_state()
+        return {}
+
+    async def save_preset(self, asked: Named, by: str) -> Message:
+        """Save the tuning in force under a name."""
+        return await self.save_tuning(asked.name, self.scenario.tuning, by)
+
+    async def save_tuning(self, name: str, tuning: Tuning, by: str) -> Message:
+        """Save any tuning under a name; if it is the one in force, the session is now on that preset."""
+        preset = await asyncio.to_thread(self._store.save, name, tuning)
+        if tuning == self.scenario.tuning:
+            self.preset = name
+            self._save_soon()
+        self._tell(self.document(by))
+        self._note("preset", f"preset {name} saved", by)
+        return preset.document()
+
+    async def apply_preset(self, asked: Named, by: str) -> Message:
+        """Use a saved tuning."""
+        preset = await asyncio.to_thread(self._store.get, asked.name)
+        answer = await self.tune(Changes(replace=preset.tuning.model_dump(mode="json")), by)
+        self.preset = asked.name
+        self._save_soon()
+        self._tell(self.document(by))
+        self._note("preset", f"preset {asked.name} applied", by)
+        return answer
+
+    async def delete_preset(self, asked: Named, by: str) -> Message:
+        """Delete a saved tuning; the one in force stays."""
+        await asyncio.to_thread(self._store.delete, asked.name)
+        if self.preset == asked.name:
+            self.preset = None
+        self._tell(self.document(by))
+        self._note("preset", f"preset {asked.name} deleted", by)
+        return {}
+
+    def _save_soon(self) -> None:
+        """Keep what runs for the next start, once changes rest."""
+        if self._save_timer is not None:
+            self._save_timer.cancel()
+        self._save_timer = asyncio.get_running_loop().call_later(SAVE_AFTER_S, lambda: self._spawn(self._save()))
+
+    async def _save(self) -> None:
+        self._save_timer = None
+        await asyncio.to_thread(self._store.save_last, self.scenario, self.preset)
