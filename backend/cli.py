@@ -3,7 +3,7 @@
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 from pydantic import ValidationError
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 app = typer.Typer(no_args_is_help=True, help="Tune the robust position control of a variable stiffness actuator.")
 
 
-def _settings(**given: object) -> "Settings":
+def _settings(**given: Any) -> "Settings":
     from backend.settings import Settings
 
     try:
@@ -46,8 +46,12 @@ def serve(
 
 @app.command()
 def simulate(
-    file: Annotated[str, typer.Argument(help="Scenario as JSON: a file, - for standard input, or a ready scenario's name.")],
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the trajectory: .csv, .json or .bin.")] = None,
+    file: Annotated[
+        str, typer.Argument(help="Scenario as JSON: a file, - for standard input, or a ready scenario's name.")
+    ],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Write the trajectory: .csv, .json or .bin.")
+    ] = None,
     every: Annotated[int, typer.Option(min=1, help="Keep every n-th sample of the trajectory.")] = 1,
     allow_unstable: Annotated[bool, typer.Option(help="Simulate even if the tuning's own loop is unstable.")] = False,
 ) -> None:

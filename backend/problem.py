@@ -62,7 +62,9 @@ def _field_error(item: Any, model: type[BaseModel], root: str) -> FieldError:
     if kind == "missing":
         return FieldError(name, None, "it is missing; expected a value")
     if kind in ("union_tag_invalid", "literal_error"):
-        return FieldError(name, value, f"expected one of {item['ctx'].get('expected_tags') or item['ctx'].get('expected')}")
+        return FieldError(
+            name, value, f"expected one of {item['ctx'].get('expected_tags') or item['ctx'].get('expected')}"
+        )
     expected = _range(info)
     if expected and kind in _NUMERIC:
         return FieldError(name, value, f"expected {expected}")
@@ -92,7 +94,11 @@ def _walk(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[list
     info: FieldInfo | None = None
     known: list[str] = list(model.model_fields)
     for part in location:
-        alternatives = [m for m in _models(here) if isinstance(part, str) and m.model_fields.get("kind") and m.model_fields["kind"].default == part]
+        alternatives = [
+            m
+            for m in _models(here)
+            if isinstance(part, str) and m.model_fields.get("kind") and m.model_fields["kind"].default == part
+        ]
         if alternatives:
             here = alternatives[0]
             known = list(here.model_fields)

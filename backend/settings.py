@@ -19,7 +19,8 @@ class Settings(BaseSettings):
     token: str | None = Field(None, min_length=16, description="Secret that callers must give; needed beyond loopback.")
     allowed_hosts: tuple[str, ...] = Field((), description="Further names this server may be called by (Host header).")
     data_dir: Path = Field(
-        Path(platformdirs.user_data_dir("vssea")), description="Where presets, the last tuning and fault snapshots are kept."
+        Path(platformdirs.user_data_dir("vssea")),
+        description="Where presets, the last tuning and fault snapshots are kept.",
     )
     scenario: str = Field("nominal", description="Scenario of the live session at the first start.")
     scene: bool = Field(True, description="Whether the 3D scene runs.")

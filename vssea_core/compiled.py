@@ -25,8 +25,9 @@ def source_digest(package: Path) -> str:
 
 def cache_folder() -> Path:
     """Return the folder of this version's machine code: $VSSEA_CACHE_DIR or ~/.cache/vssea, then the source hash."""
-    base = os.environ.get("VSSEA_CACHE_DIR") or os.path.join(os.environ.get("XDG_CACHE_HOME") or "~/.cache", "vssea")
-    return Path(base).expanduser() / "kernels" / source_digest(Path(__file__).parent)
+    given = os.environ.get("VSSEA_CACHE_DIR")
+    base = Path(given) if given else Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache") / "vssea"
+    return base.expanduser() / "kernels" / source_digest(Path(__file__).parent)
 
 
 numba.config.CACHE_DIR = str(cache_folder())

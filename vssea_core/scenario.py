@@ -12,7 +12,6 @@ from vssea_core.control.tuning import Tuning, VelocityObserver
 from vssea_core.fields import Part, parameter
 from vssea_core.signals.documents import ConstantStiffness, Disturbances, Reference, SineReference, StiffnessReference
 
-
 MAX_SAMPLES = 200_000
 
 
@@ -68,4 +67,6 @@ def check_stiffness_fits(reference: StiffnessReference, actuator: Actuator) -> N
         asked.append(("target", reference.target))
     for name, value in asked:
         if not low <= value <= high:
-            raise ValueError(f"stiffness_reference.{name} is {value:g} N·m/rad; expected {low:g} to {high:g} N·m/rad, the end stops")
+            raise ValueError(
+                f"stiffness_reference.{name} is {value:g} N·m/rad; expected {low:g} to {high:g} N·m/rad, the end stops"
+            )

@@ -19,9 +19,9 @@ from backend.settings import Settings
 
 COOKIE = "vssea_token"
 POLICY_VIOLATION = 1008
-CONTENT_SECURITY_POLICY = (
-    "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; frame-ancestors 'self'; base-uri 'none'"
-)
+CONTENT_SECURITY_POLICY = "; ".join((
+    "default-src 'self'", "style-src 'self' 'unsafe-inline'", "img-src 'self' data:", "frame-ancestors 'self'", "base-uri 'none'",
+))  # fmt: skip
 
 
 class Guard:
@@ -48,14 +48,20 @@ class Guard:
         host = headers.get("host", "")
         if _name(host) not in self._hosts:
             return Problem(
-                421, "Unknown host", f"This server is not called {_name(host)!r}; set VSSEA_ALLOWED_HOSTS if it should be."
+                421,
+                "Unknown host",
+                f"This server is not called {_name(host)!r}; set VSSEA_ALLOWED_HOSTS if it should be.",
             )
         origin = headers.get("origin")
         if origin is not None and urlsplit(origin).netloc != host:
-            return Problem(403, "Other origin", f"A page from {origin} may not use this server; open it from {host} itself.")
+            return Problem(
+                403, "Other origin", f"A page from {origin} may not use this server; open it from {host} itself."
+            )
         if self._token is not None and not self._knows_token(scope, headers):
             return Problem(
-                401, "Token needed", "This server needs its token: open the page once with ?token=..., or send Authorization: Bearer."
+                401,
+                "Token needed",
+                "This server needs its token: open the page once with ?token=..., or send Authorization: Bearer.",
             )
         return None
 
@@ -71,7 +77,9 @@ class Guard:
     async def _welcome(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Put the token of the address into a cookie, and take it out of the address."""
         response = RedirectResponse(scope["path"], status_code=303)
-        response.set_cookie(COOKIE, self._token or "", httponly=True, samesite="strict", secure=scope["scheme"] == "https")
+        response.set_cookie(
+            COOKIE, self._token or "", httponly=True, samesite="strict", secure=scope["scheme"] == "https"
+        )
         await response(scope, receive, send)
 
     async def _refuse(self, problem: Problem, scope: Scope, receive: Receive, send: Send) -> None:

@@ -151,7 +151,9 @@ class Page:
             if command == "ping":
                 result: dict[str, Any] = {}
             elif len(self._commands) > COMMANDS_AT_ONCE and command != "stop":
-                raise Problem(429, "Too many at once", f"More than {COMMANDS_AT_ONCE} commands are waiting; send fewer.")
+                raise Problem(
+                    429, "Too many at once", f"More than {COMMANDS_AT_ONCE} commands are waiting; send fewer."
+                )
             else:
                 result = await self._session.command(command, message.get("arguments"), self.name)
         except Problem as problem:

@@ -33,7 +33,9 @@ def add_problem_handlers(app: FastAPI) -> None:
 
     @app.exception_handler(RequestValidationError)
     async def of_fastapi(_: Request, error: RequestValidationError) -> Response:
-        errors = [FieldError(".".join(map(str, item["loc"])), item.get("input"), item["msg"]) for item in error.errors()]
+        errors = [
+            FieldError(".".join(map(str, item["loc"])), item.get("input"), item["msg"]) for item in error.errors()
+        ]
         first = errors[0]
         return problem_response(Problem(422, "Value refused", f"{first.field}: {first.message}.", errors))
 

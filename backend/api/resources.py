@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Body, Query, Request, Response
 from pydantic import ValidationError
 
-from backend.compute.pool import JobFailed, JobRefused, Pool
+from backend.compute.pool import JobFailedError, JobRefusedError, Pool
 from backend.presets.store import PresetStore
 from backend.problem import Problem, from_validation, refused
 from backend.session.arguments import Named
@@ -29,7 +29,9 @@ async def body_of(request: Request) -> Any:
     async for part in request.stream():
         size += len(part)
         if size > LARGEST_BODY:
-            raise Problem(413, "Too large", f"The body is larger than {LARGEST_BODY} bytes; expected one JSON document.")
+            raise Problem(
+                413, "Too large", f"The body is larger than {LARGEST_BODY} bytes; expected one JSON document."
+            )
         parts.append(part)
     content = b"".join(parts)
     if not content.strip():
@@ -88,10 +90,10 @@ def resources(session: Session, pool: Pool, store: PresetStore) -> APIRouter:
             media_type, content = await pool.simulation.run(
                 "simulate_scenario", asked, trajectory, every, allow_unstable, time_limit_s=SIMULATION_LIMIT_S
             )
-        except JobRefused as refusal:
+        except JobRefusedError as refusal:
             sentence = str(refusal)
             raise refused(f"{sentence[:1].upper()}{sentence[1:]}.") from refusal
-        except JobFailed as failure:
+        except JobFailedError as failure:
             raise Problem(503, "Not computed", f"The simulation could not be computed: {failure}.") from failure
         return Response(content, media_type=media_type)
 

@@ -12,11 +12,11 @@ START_LIMIT_S = 120.0
 ENTRY = "backend.compute.worker:run_worker"
 
 
-class JobRefused(ValueError):
+class JobRefusedError(ValueError):
     """The job says that its input makes no sense; the text is a sentence for the user."""
 
 
-class JobFailed(RuntimeError):
+class JobFailedError(RuntimeError):
     """The worker died, ran out of time, or failed in a way that is not the user's doing."""
 
 
@@ -34,7 +34,7 @@ class Worker:
             await self._ready()
 
     async def run(self, job: str, *arguments: Any, time_limit_s: float = 60.0) -> Any:
-        """Return what `job` returns. Raises JobRefused or JobFailed; a cancelled or overdue job ends with its process."""
+        """Return what `job` returns. Raises JobRefusedError or JobFailedError; a cancelled or overdue job ends with its process."""
         async with self._turn:
             await self._ready()
             return await self._answer((job, arguments), time_limit_s)
@@ -64,18 +64,20 @@ class Worker:
                 kind, content = await asyncio.to_thread(exchange)
         except (EOFError, OSError) as broken:
             await self._end()
-            raise JobFailed(f"the {self._name} process ended unexpectedly; try again") from broken
+            raise JobFailedError(f"the {self._name} process ended unexpectedly; try again") from broken
         except TimeoutError as late:
             await self._end()
-            raise JobFailed(f"this took longer than {time_limit_s:g} s and was given up; shorten the scenario") from late
+            raise JobFailedError(
+                f"this took longer than {time_limit_s:g} s and was given up; shorten the scenario"
+            ) from late
         except asyncio.CancelledError:
             await asyncio.shield(self._end())
             raise
         if kind == "refused":
-            raise JobRefused(content)
+            raise JobRefusedError(content)
         if kind == "failed":
             logger.error("job %s failed:\n%s", job and job[0], content)
-            raise JobFailed("an internal error; the server's log has the details")
+            raise JobFailedError("an internal error; the server's log has the details")
         return content
 
     async def _end(self) -> None:

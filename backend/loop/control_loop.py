@@ -6,8 +6,22 @@ from multiprocessing.connection import Connection
 
 from backend.loop.engine import Engine
 from backend.loop.messages import (
-    Changed, Command, Done, Install, Load, Pause, Refused, Report, Reset, Resume, SetDisturbances, SetPace, SetReference,
-    SetStiffness, State, Step,
+    Changed,
+    Command,
+    Done,
+    Install,
+    Load,
+    Pause,
+    Refused,
+    Report,
+    Reset,
+    Resume,
+    SetDisturbances,
+    SetPace,
+    SetReference,
+    SetStiffness,
+    State,
+    Step,
 )  # fmt: skip
 from backend.loop.pacer import Pacer
 from backend.telemetry.ring import EPOCH, EXECUTION_US, LATENESS_US, OVERRUNS, WRITTEN, RingWriter

@@ -4,11 +4,12 @@ import time
 from collections.abc import Callable
 
 
-
 class Pacer:
     """Waits for due times one interval apart and counts whole intervals that were missed."""
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic, sleep: Callable[[float], None] = time.sleep) -> None:
+    def __init__(
+        self, clock: Callable[[], float] = time.monotonic, sleep: Callable[[float], None] = time.sleep
+    ) -> None:
         self._clock, self._sleep = clock, sleep
         self._due = clock()
         self.overruns = 0

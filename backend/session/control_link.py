@@ -6,8 +6,8 @@ from itertools import count
 from multiprocessing.process import BaseProcess
 
 from backend.loop.messages import Command, Done, Ready, Refused, Report
-from backend.processes import CONTEXT, started
 from backend.problem import Problem, refused
+from backend.processes import CONTEXT, started
 
 ENTRY = "backend.loop.process:run_control_process"
 ANSWER_LIMIT_S = 2.0

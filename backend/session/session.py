@@ -8,18 +8,18 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from backend.compute.pool import JobFailed, JobRefused, Pool
+from backend.compute.pool import JobFailedError, JobRefusedError, Pool
 from backend.loop import messages
 from backend.presets.store import PresetStore
+from backend.problem import Problem, from_validation, refused
 from backend.session.arguments import Loading, Named, Nothing, Pace, Samples
 from backend.session.changes import Changes, differences, with_changes
 from backend.session.control_link import ControlLink
-from backend.session.events import Event, EventLog, Kind
+from backend.session.events import Event, EventLog, Kind, Severity
 from backend.session.fault_snapshot import save_fault_snapshot
 from backend.session.health import Health
 from backend.session.limit_watch import LimitWatch
 from backend.session.notes import ChangeNotes, Note
-from backend.problem import Problem, from_validation, refused
 from backend.session.sentences import change_words, state_sentence
 from backend.settings import Settings
 from backend.telemetry.ring import EPOCH, Ring, RingReader
@@ -112,7 +112,9 @@ class Session:
             logger.warning("the last tuning cannot be used: %s", problem.detail)
             self.scenario, self.preset = SCENARIOS[self._settings.scenario], None
             await self._load(self.scenario)
-            self._note("scenario", f"The last tuning cannot be used: {problem.detail} Loaded {self.scenario.name}", "server")
+            self._note(
+                "scenario", f"The last tuning cannot be used: {problem.detail} Loaded {self.scenario.name}", "server"
+            )
         else:
             if last is not None:
                 self._note("scenario", f"{self.scenario.name} and its last tuning are back", "server")
@@ -197,7 +199,7 @@ class Session:
         self.state, self._reason = report.state, report.reason
         self.epoch, self._time_s = report.epoch, report.time_s
         sentence = state_sentence(self.state, self._reason, self._time_s, self._stopped_by, self.scenario)
-        severity = "fault" if self.state == "fault" else "warning" if self.state == "stopped" else "info"
+        severity: Severity = "fault" if self.state == "fault" else "warning" if self.state == "stopped" else "info"
         by = self._stopped_by or "server" if self.state == "stopped" else "session"
         self.log.add("fault" if self.state == "fault" else "state", sentence, by, self.epoch, self._time_s, severity)
         self._tell_state()
@@ -207,7 +209,11 @@ class Session:
     async def _keep_fault(self) -> None:
         period_s = self.scenario.timing.sample_time_s
         file = await asyncio.to_thread(
-            save_fault_snapshot, self._settings.data_dir, self.ring.last(round(2.0 / period_s)), self.scenario, self._reason
+            save_fault_snapshot,
+            self._settings.data_dir,
+            self.ring.last(round(2.0 / period_s)),
+            self.scenario,
+            self._reason,
         )
         self._note("fault", f"The last 2 s before the fault are kept in {file}", "server")
 
@@ -248,7 +254,9 @@ class Session:
 
     async def set_reference(self, asked: Changes, by: str) -> Message:
         """Follow another reference, without a jump."""
-        return await self._change("reference", asked, by, lambda new: self._link.command(messages.SetReference(new.reference)))
+        return await self._change(
+            "reference", asked, by, lambda new: self._link.command(messages.SetReference(new.reference))
+        )
 
     async def set_stiffness(self, asked: Changes, by: str) -> Message:
         """Command another stiffness; refused if the tuning would be unstable there."""
@@ -278,7 +286,11 @@ class Session:
                 self._notes.add(part, by, found, self.epoch, done.time_s)
                 self._tell(self.document(by))
                 self._save_soon()
-            return {"tuning_id": self.tuning_id, "applied": {path: after for path, (_, after) in found.items()}, "notes": []}
+            return {
+                "tuning_id": self.tuning_id,
+                "applied": {path: after for path, (_, after) in found.items()},
+                "notes": [],
+            }
 
     async def _install(self, new: Scenario) -> messages.Done:
         prepared = await self._prepared(new)
@@ -289,17 +301,19 @@ class Session:
     async def _prepared(self, scenario: Scenario) -> Any:
         try:
             return await self._pool.design.run("prepare_tuning", scenario)
-        except JobRefused as refusal:
+        except JobRefusedError as refusal:
             sentence = str(refusal)
             raise refused(f"{sentence[:1].upper()}{sentence[1:]}. The old tuning keeps running.") from refusal
-        except JobFailed as failure:
+        except JobFailedError as failure:
             raise Problem(503, "Not computed", f"The tuning could not be computed: {failure}.") from failure
 
     async def load_scenario(self, asked: Loading, by: str) -> Message:
         """Restart with another scenario, at t = 0."""
         scenario = asked.scenario or SCENARIOS.get(asked.name or "")
         if scenario is None:
-            raise Problem(404, "No such scenario", f"There is no scenario {asked.name!r}; known: {', '.join(SCENARIOS)}.")
+            raise Problem(
+                404, "No such scenario", f"There is no scenario {asked.name!r}; known: {', '.join(SCENARIOS)}."
+            )
         async with self._turn:
             await self._load(scenario)
             self.preset = None

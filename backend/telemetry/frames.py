@@ -2,6 +2,7 @@
 
 import struct
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 
@@ -19,7 +20,7 @@ def frames(piece: Piece, period_s: float, history: bool = False) -> Iterator[byt
     """Yield the samples of `piece` as frames of at most LONGEST samples, none across two epochs."""
     epochs = piece.samples[:, EPOCH]
     borders = [0, *(np.flatnonzero(np.diff(epochs)) + 1).tolist(), len(epochs)]
-    for begin, end in zip(borders, borders[1:], strict=False):
+    for begin, end in pairwise(borders):
         for start in range(begin, end, LONGEST):
             samples = piece.samples[start : min(start + LONGEST, end)]
             if len(samples):

@@ -33,7 +33,7 @@ class Heat(NamedTuple):
 
 
 @inlined
-def thermal_limit(peak, continuous, heat):  # type: ignore[no-untyped-def]
+def thermal_limit(peak, continuous, heat):
     """Return the torque [N m] left by I^2 t: the peak, folding back to the continuous torque as `heat` nears its square."""
     if continuous >= peak:
         return peak
@@ -43,7 +43,7 @@ def thermal_limit(peak, continuous, heat):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def limit_motor_torque(drives, heat, torque, omega_e):  # type: ignore[no-untyped-def]
+def limit_motor_torque(drives, heat, torque, omega_e):
     """Return the motor torque [N m] after its limits, the limit in force [N m], and the bits of what limited it."""
     available = thermal_limit(drives.peak_torque, drives.continuous_torque, heat.motor)
     bit = PEAK if available == drives.peak_torque else CONTINUOUS
@@ -58,7 +58,7 @@ def limit_motor_torque(drives, heat, torque, omega_e):  # type: ignore[no-untype
 
 
 @inlined
-def limit_stiffness_torque(drives, heat, torque, omega_ms):  # type: ignore[no-untyped-def]
+def limit_stiffness_torque(drives, heat, torque, omega_ms):
     """Return the stiffness motor's torque [N m] after its limits, and the bits of what limited it."""
     available = thermal_limit(drives.stiffness_peak_torque, drives.stiffness_continuous_torque, heat.stiffness_motor)
     bit = STIFFNESS_TORQUE
@@ -71,7 +71,7 @@ def limit_stiffness_torque(drives, heat, torque, omega_ms):  # type: ignore[no-u
 
 
 @inlined
-def warmed(drives, heat, torque, stiffness_torque):  # type: ignore[no-untyped-def]
+def warmed(drives, heat, torque, stiffness_torque):
     """Return the thermal averages after one sample of the applied torques [N m]."""
     keep = drives.thermal_decay
     gain = 1.0 - keep

@@ -45,7 +45,7 @@ class PlantState(NamedTuple):
 
 
 @inlined
-def dry_friction(plant, omega):  # type: ignore[no-untyped-def]
+def dry_friction(plant, omega):
     """Return the Coulomb friction torque [N m], smooth through zero: tau_c v / sqrt(v^2 + eps^2)."""
     if plant.coulomb_friction == 0.0:
         return 0.0
@@ -54,7 +54,7 @@ def dry_friction(plant, omega):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def motion(plant, y, q, q_rate, tau_e, tau_ms, load_l, load_e):  # type: ignore[no-untyped-def]
+def motion(plant, y, q, q_rate, tau_e, tau_ms, load_l, load_e):
     """Return the time derivative of y = (theta_l, theta~, theta_ms, omega_l, omega~, omega_ms), Eqs. (1)-(2).
 
     `q`, `q_rate` are the lag's share of theta_e and theta_e'; `load_l`, `load_e` the disturbance torques [N m].
@@ -91,16 +91,16 @@ class LagShares(NamedTuple):
 def lag_shares(lag_s: float, inertia: float, step_s: float) -> LagShares:
     """Return q and q' of q'' = exp(-t / lag) / J_e at the instants of a step of `step_s` [s]."""
     if lag_s == 0.0:
-        return LagShares(*[0.0] * len(LagShares._fields))
+        return LagShares._make([0.0] * len(LagShares._fields))
     times = [c * step_s for c in INSTANTS[1:]]
     grown = [-math.expm1(-time / lag_s) for time in times]
     shift = [lag_s * (time - lag_s * share) / inertia for time, share in zip(times, grown, strict=True)]
     rate = [lag_s * share / inertia for share in grown]
-    return LagShares(*shift, *rate, math.exp(-step_s / lag_s))
+    return LagShares._make([*shift, *rate, math.exp(-step_s / lag_s)])
 
 
 @inlined
-def dormand_prince_step(plant, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, h):  # type: ignore[no-untyped-def]
+def dormand_prince_step(plant, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, h):
     """Return y after one Dormand-Prince step of order 5 and length h [s], with the torques held.
 
     `gap` is how far the motor's torque still is from `tau_e` [N m] at its start; `loads_l`, `loads_e` are the disturbance
@@ -124,7 +124,7 @@ def dormand_prince_step(plant, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, h):
 
 
 @inlined
-def advance_plant(plant, whole_lag, fine_lag, state, tau_e, tau_ms, link_terms, motor_terms, time, sample_time_s):  # type: ignore[no-untyped-def]
+def advance_plant(plant, whole_lag, fine_lag, state, tau_e, tau_ms, link_terms, motor_terms, time, sample_time_s):
     """Return the state one sample period after `time` [s], with the torques [N m] held by the drives.
 
     `whole_lag`, `fine_lag` are the LagShares of a whole period and of one of its substeps, which a sharp friction near

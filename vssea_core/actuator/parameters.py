@@ -132,7 +132,8 @@ class StiffnessMechanism(Part):
             raise ValueError(f"softest {self.softest:g} N·m/rad is not below stiffest {self.stiffest:g} N·m/rad")
         if self.continuous_torque > self.peak_torque:
             raise ValueError(
-                f"stiffness motor continuous torque {self.continuous_torque:g} N·m is above its peak torque {self.peak_torque:g} N·m"
+                f"stiffness motor continuous torque {self.continuous_torque:g} N·m is above "
+                f"its peak torque {self.peak_torque:g} N·m"
             )
         return self
 

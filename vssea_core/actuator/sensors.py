@@ -39,7 +39,7 @@ def encoders(sensors: Sensors, motor: EquilibriumMotor) -> Encoders:
 
 
 @inlined
-def quantised(angle, resolution):  # type: ignore[no-untyped-def]
+def quantised(angle, resolution):
     """Return `angle` [rad] rounded to the nearest whole count."""
     if resolution == 0.0:
         return angle
@@ -47,7 +47,7 @@ def quantised(angle, resolution):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def measure(resolution, state):  # type: ignore[no-untyped-def]
+def measure(resolution, state):
     """Return the Measurement of a PlantState."""
     return Measurement(
         quantised(state.theta_l, resolution.link),

@@ -22,7 +22,7 @@ SERIES_RANGE = 0.25
 
 
 @inlined
-def sine_and_cosine(x):  # type: ignore[no-untyped-def]
+def sine_and_cosine(x):
     """Return sin(x), cos(x): by their series (error below 2e-16) for |x| <= 0.25, a deflection of 1 rad, else by libm."""
     if abs(x) > SERIES_RANGE:
         return math.sin(x), math.cos(x)
@@ -34,7 +34,7 @@ def sine_and_cosine(x):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def leaf(deflection, theta_ms):  # type: ignore[no-untyped-def]
+def leaf(deflection, theta_ms):
     """Return the Leaf at a deflection [rad] and a stiffness motor position [rad].
 
     V = (2 Y_tau / theta_ms^3) (1 - cos(delta/2)); with q = sin(delta/4): 1 - cos(delta/2) = 2 q^2 keeps its digits.

@@ -7,7 +7,8 @@ from vssea_core.compiled import inlined
 
 
 @inlined
-def shifted_1(y, h, w1, k1):  # type: ignore[no-untyped-def]
+def shifted_1(y, h, w1, k1):
+    """Return y + h times the weighted sum of 1 slope."""
     return (
         y[0] + h * (w1 * k1[0]),
         y[1] + h * (w1 * k1[1]),
@@ -19,7 +20,8 @@ def shifted_1(y, h, w1, k1):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def shifted_2(y, h, w1, k1, w2, k2):  # type: ignore[no-untyped-def]
+def shifted_2(y, h, w1, k1, w2, k2):
+    """Return y + h times the weighted sum of 2 slopes."""
     return (
         y[0] + h * (w1 * k1[0] + w2 * k2[0]),
         y[1] + h * (w1 * k1[1] + w2 * k2[1]),
@@ -31,7 +33,8 @@ def shifted_2(y, h, w1, k1, w2, k2):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def shifted_3(y, h, w1, k1, w2, k2, w3, k3):  # type: ignore[no-untyped-def]
+def shifted_3(y, h, w1, k1, w2, k2, w3, k3):
+    """Return y + h times the weighted sum of 3 slopes."""
     return (
         y[0] + h * (w1 * k1[0] + w2 * k2[0] + w3 * k3[0]),
         y[1] + h * (w1 * k1[1] + w2 * k2[1] + w3 * k3[1]),
@@ -43,7 +46,8 @@ def shifted_3(y, h, w1, k1, w2, k2, w3, k3):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def shifted_4(y, h, w1, k1, w2, k2, w3, k3, w4, k4):  # type: ignore[no-untyped-def]
+def shifted_4(y, h, w1, k1, w2, k2, w3, k3, w4, k4):
+    """Return y + h times the weighted sum of 4 slopes."""
     return (
         y[0] + h * (w1 * k1[0] + w2 * k2[0] + w3 * k3[0] + w4 * k4[0]),
         y[1] + h * (w1 * k1[1] + w2 * k2[1] + w3 * k3[1] + w4 * k4[1]),
@@ -55,7 +59,8 @@ def shifted_4(y, h, w1, k1, w2, k2, w3, k3, w4, k4):  # type: ignore[no-untyped-
 
 
 @inlined
-def shifted_5(y, h, w1, k1, w2, k2, w3, k3, w4, k4, w5, k5):  # type: ignore[no-untyped-def]
+def shifted_5(y, h, w1, k1, w2, k2, w3, k3, w4, k4, w5, k5):
+    """Return y + h times the weighted sum of 5 slopes."""
     return (
         y[0] + h * (w1 * k1[0] + w2 * k2[0] + w3 * k3[0] + w4 * k4[0] + w5 * k5[0]),
         y[1] + h * (w1 * k1[1] + w2 * k2[1] + w3 * k3[1] + w4 * k4[1] + w5 * k5[1]),

@@ -25,8 +25,13 @@ def unstable_because(tuning: Tuning, timing: Timing, torque_lag_s: float, stiffn
     found = judged(tuning)
     if found.stable:
         return None
-    growth = "without bound" if math.isinf(found.radius) else f"{found.radius:.3g}-fold a sample at {found.frequency:.3g} rad/s"
-    circumstances = f"{timing.sample_time_s * 1e3:g} ms, {timing.compute_delay_samples} sample of delay, lag {torque_lag_s * 1e3:g} ms"
+    growth = (
+        "without bound"
+        if math.isinf(found.radius)
+        else f"{found.radius:.3g}-fold a sample at {found.frequency:.3g} rad/s"
+    )
+    delay = "no delay" if timing.compute_delay_samples == 0 else "one sample of delay"
+    circumstances = f"{timing.sample_time_s * 1e3:g} ms, {delay}, lag {torque_lag_s * 1e3:g} ms"
     remedy = _remedy(tuning, lambda candidate: judged(candidate).stable)
     return (
         f"{_described(tuning)} is unstable even with its own model at {stiffness:.4g} N·m/rad ({circumstances}): "
@@ -45,7 +50,7 @@ def _described(tuning: Tuning) -> str:
 
 
 def _remedy(tuning: Tuning, stable: Callable[[Tuning], bool]) -> str:
-    """Return what would work: the largest gain or bandwidth below the present one, or the least boundary layer, found by halving."""
+    """Return what would work: the largest poles, switching gain or bandwidth below the present ones, found by halving."""
     controller, observer = tuning.controller, tuning.observer
     found = []
     if isinstance(controller, StateFeedback):
@@ -82,4 +87,4 @@ def _largest(works: Callable[[float], bool], low: float, high: float) -> float |
     for _ in range(HALVINGS):
         middle = math.sqrt(low * high)
         low, high = (middle, high) if works(middle) else (low, middle)
-    return low
+    return 0.99 * low  # so that the three digits that are printed stay on the stable side

@@ -18,11 +18,11 @@ from vssea_core.actuator.spring import stiffness_motor_position
 from vssea_core.channels import CHANNELS
 from vssea_core.control.prepared import prepare
 from vssea_core.control.tuning import ControllerModel, SlidingMode, Tuning
-from vssea_core.signals.references import reference_row
 from vssea_core.signals.documents import StepReference
-from vssea_core.signals.stiffness import SLEW_SIZE, Slew
+from vssea_core.signals.references import reference_row
+from vssea_core.signals.stiffness import SLEW_SIZE, SLEWED_SIZE, Slew
 from vssea_core.simulation.kernel import run
-from vssea_core.simulation.state import APPLIED, MEMORY, PENDING, SLEWED, SLEWED_SIZE, STATE_SIZE, rig_numbers
+from vssea_core.simulation.state import APPLIED, MEMORY, PENDING, SLEWED, STATE_SIZE, rig_numbers
 
 Numbers = NDArray[np.float64]
 
@@ -110,14 +110,16 @@ def _differences(theta_ms: float, delayed: bool) -> dict[int, float]:
     """
     plant = (1e-5, 1e-3, 1e-5, 1e-3, 1e-4, 1e-2, 1e-2)
     controller = (*STEP_OF_CHANNEL * 3, 1e-5 / theta_ms**3, 1e-5 / theta_ms**4)
-    sizes = {entry: size for entry, size in enumerate(plant)}
+    sizes = dict(enumerate(plant))
     sizes |= {APPLIED: 1e-2, APPLIED + 1: 1e-2}
     if delayed:
         sizes |= {PENDING: 1e-2, PENDING + 1: 1e-2}
     return sizes | {MEMORY + place: size for place, size in enumerate(controller)}
 
 
-def stability(tuning: Tuning, timing: Timing, torque_lag_s: float, stiffness: float, plant: Plant | None = None) -> Stability:
+def stability(
+    tuning: Tuning, timing: Timing, torque_lag_s: float, stiffness: float, plant: Plant | None = None
+) -> Stability:
     """Return the Stability of the sampled loop at `stiffness` [N m/rad] (see closed_loop_matrix)."""
     matrix = closed_loop_matrix(tuning, timing, torque_lag_s, stiffness, plant)
     if not np.isfinite(matrix).all():

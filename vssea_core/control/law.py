@@ -27,7 +27,9 @@ class Law(NamedTuple):
     switching_gain: float
     layer_width: float  # 0 = sgn
     position_form: float  # 1 = position observer
-    difference_keep: float  # filtered encoder differences: w+ = keep w + gain (theta+ - theta); gain 0 = measured velocities
+    difference_keep: (
+        float  # filtered encoder differences: w+ = keep w + gain (theta+ - theta); gain 0 = measured velocities
+    )
     difference_gain: float
     link_inertia: float
     link_damping: float
@@ -72,7 +74,7 @@ class Terms(NamedTuple):
 
 
 @inlined
-def switched(sigma, layer_width):  # type: ignore[no-untyped-def]
+def switched(sigma, layer_width):
     """Return sgn(sigma), or its saturation over +-layer_width."""
     if layer_width > 0.0:
         return min(1.0, max(-1.0, sigma / layer_width))
@@ -80,7 +82,7 @@ def switched(sigma, layer_width):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def chosen_snap(law, sigma, e1, e2, e3, e4, r4):  # type: ignore[no-untyped-def]
+def chosen_snap(law, sigma, e1, e2, e3, e4, r4):
     """Return nu [rad/s^4]: Eq. (9) for state feedback, Eq. (16) for sliding mode."""
     if law.controller == STATE_FEEDBACK:
         return r4 + law.k1 * e1 + law.k2 * e2 + law.k3 * e3 + law.k4 * e4
@@ -89,7 +91,7 @@ def chosen_snap(law, sigma, e1, e2, e3, e4, r4):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def act(law, memory, target, stiffness_target):  # type: ignore[no-untyped-def]
+def act(law, memory, target, stiffness_target):
     """Return the Terms of this tick from the observers' memory and both references."""
     link, motor, stiffness = memory.link, memory.motor, memory.stiffness
     theta_ms = stiffness.measured

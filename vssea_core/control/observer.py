@@ -81,7 +81,7 @@ class Memory(NamedTuple):
 
 
 @inlined
-def updated_velocity_form(gains, channel, theta, omega, f0, f1):  # type: ignore[no-untyped-def]
+def updated_velocity_form(gains, channel, theta, omega, f0, f1):
     """Return the channel one period later: Eq. (22) in d, d', d'', given v = omega and f at both ends of the period."""
     dv = omega - channel.omega
     d, d1, d2 = channel.d, channel.d1, channel.d2
@@ -96,7 +96,7 @@ def updated_velocity_form(gains, channel, theta, omega, f0, f1):  # type: ignore
 
 
 @inlined
-def updated_position_form(gains, channel, theta, phi0, phi1):  # type: ignore[no-untyped-def]
+def updated_position_form(gains, channel, theta, phi0, phi1):
     """Return the channel one period later from the measured position `theta`; damping sits in the matrices, not in phi."""
     w, d, d1, d2 = channel.omega, channel.d, channel.d1, channel.d2
     t = gains.period
@@ -120,7 +120,7 @@ def updated_position_form(gains, channel, theta, phi0, phi1):  # type: ignore[no
 
 
 @inlined
-def started(model, y, applied_e, applied_ms):  # type: ignore[no-untyped-def]
+def started(model, y, applied_e, applied_ms):
     """Return the memory of a first tick: at rest in equilibrium, d = f and d' = d'' = 0 (zero would kick the motor)."""
     spring = leaf(y.theta_e - y.theta_l, y.theta_ms)
     shape = Spring(spring.torque, spring.back, 1.0)
@@ -138,7 +138,7 @@ def started(model, y, applied_e, applied_ms):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def observe(prepared, memory, y, applied_e, applied_ms):  # type: ignore[no-untyped-def]
+def observe(prepared, memory, y, applied_e, applied_ms):
     """Return the memory brought up to the measurement `y`, with the torques [N m] applied over the period that ended."""
     law = prepared.law
     if memory.spring.started == 0.0:

@@ -30,9 +30,7 @@ def velocity_exact(bandwidth: float, sample_time_s: float) -> tuple[Matrix, Matr
     phi = chain(3, t)
     c = np.array([t, t**2 / 2, t**3 / 6])
     z = math.exp(-bandwidth * t)
-    gain = np.array(
-        [(1 - z) * (2 * z * z + 5 * z + 11) / (6 * t), (1 - z) ** 2 * (z + 2) / t**2, (1 - z) ** 3 / t**3]
-    )
+    gain = np.array([(1 - z) * (2 * z * z + 5 * z + 11) / (6 * t), (1 - z) ** 2 * (z + 2) / t**2, (1 - z) ** 3 / t**3])
     return phi - np.outer(gain, c), -gain, gain * t / 2, gain * t / 2
 
 

@@ -22,7 +22,7 @@ class Prepared(NamedTuple):
 
 
 @inlined
-def loaded_prepared(values):  # type: ignore[no-untyped-def]
+def loaded_prepared(values):
     """Return the Prepared of an array made by `prepare`."""
     return Prepared(
         Law(*to_fixed_tuple(values[:LAW], LAW)),
@@ -33,7 +33,7 @@ def loaded_prepared(values):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def loaded_memory(values):  # type: ignore[no-untyped-def]
+def loaded_memory(values):
     """Return the Memory kept in an array of MEMORY_SIZE numbers; all zeros is a controller that has not started."""
     return Memory(
         Channel(*to_fixed_tuple(values[:CHANNEL], CHANNEL)),
@@ -44,7 +44,7 @@ def loaded_memory(values):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def keep_memory(values, memory):  # type: ignore[no-untyped-def]
+def keep_memory(values, memory):
     """Write `memory` into an array of MEMORY_SIZE numbers."""
     for i in range(CHANNEL):
         values[i] = memory.link[i]

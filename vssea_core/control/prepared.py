@@ -1,6 +1,7 @@
 """From a tuning to the flat numbers of the tick."""
 
 import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,6 +10,7 @@ from vssea_core.control.design import state_feedback_gains, surface_gains
 from vssea_core.control.law import SLIDING_MODE, STATE_FEEDBACK, Law
 from vssea_core.control.observer import ObserverGains
 from vssea_core.control.tuning import SlidingMode, StateFeedback, Tuning, VelocityObserver
+
 
 def prepare(tuning: Tuning, sample_time_s: float) -> NDArray[np.float64]:
     """Return `tuning` as one array of numbers: gains and discrete matrices, in the order of Prepared."""
@@ -34,10 +36,17 @@ def _law(tuning: Tuning, sample_time_s: float) -> Law:
     if isinstance(observer, VelocityObserver) and observer.velocity_source == "difference":
         keep = math.exp(-observer.velocity_filter * sample_time_s)
         gain = (1.0 - keep) / sample_time_s
+    k1, k2, k3, k4 = state_feedback_gains(feedback.natural_frequency, feedback.damping)
+    s1, s2, s3 = surface_gains(surface.surface_pole)
     return Law(
         SLIDING_MODE if isinstance(controller, SlidingMode) else STATE_FEEDBACK,
-        *state_feedback_gains(feedback.natural_frequency, feedback.damping),
-        *surface_gains(surface.surface_pole),
+        k1,
+        k2,
+        k3,
+        k4,
+        s1,
+        s2,
+        s3,
         surface.switching_gain,
         surface.layer_width if surface.switch == "layer" else 0.0,
         float(observer.kind == "position"),
@@ -65,4 +74,4 @@ def _observer_gains(tuning: Tuning, bandwidth: float, damping_rate: float, sampl
     else:
         a, b0, b1, m = observer_design.position_form(bandwidth, damping_rate, sample_time_s)
         position = np.array([*a[0, 1:], *a[1, 1:], b0[0], b1[0], b0[1], b1[1], *m])
-    return ObserverGains(*velocity, *position, sample_time_s)
+    return ObserverGains._make([*velocity, *position, sample_time_s])

@@ -6,7 +6,7 @@ from vssea_core.control.observer import observe
 
 
 @inlined
-def step(before, prepared, memory, measurement, applied_e, applied_ms, target, stiffness_target):  # type: ignore[no-untyped-def]
+def step(before, prepared, memory, measurement, applied_e, applied_ms, target, stiffness_target):
     """Return the controller's next memory and the Terms of this tick.
 
     `before` is the tuning that was in force over the period that has just ended (its observer belongs to that period),

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from vssea_core.actuator.parameters import Link, EquilibriumMotor, StiffnessMechanism
+from vssea_core.actuator.parameters import EquilibriumMotor, Link, StiffnessMechanism
 from vssea_core.fields import Part, choice, kind, parameter
 
 

@@ -40,13 +40,13 @@ def disturbance_rows(terms: Sequence[Disturbance], sample_time_s: float) -> NDAr
 
 
 @inlined
-def active(row, tick_time):  # type: ignore[no-untyped-def]
+def active(row, tick_time):
     """Return whether a term acts over the period that starts at `tick_time` [s]."""
     return row[4] <= tick_time + TIME_SLACK_S and tick_time + TIME_SLACK_S < row[5]
 
 
 @inlined
-def load(rows, tick_time, time):  # type: ignore[no-untyped-def]
+def load(rows, tick_time, time):
     """Return the sum [N m] at `time` [s] of the terms that are active in the period starting at `tick_time`."""
     total = 0.0
     for i in range(rows.shape[0]):
@@ -60,7 +60,7 @@ def load(rows, tick_time, time):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def loads_of_step(rows, tick_time, time, h, whole):  # type: ignore[no-untyped-def]
+def loads_of_step(rows, tick_time, time, h, whole):
     """Return the torques [N m] at the six instants of a step of `h` [s] from `time`, in the period starting at `tick_time`.
 
     If the step is the `whole` period, the angles of a sine are turned by precomputed ones, which saves four sines.
@@ -93,6 +93,6 @@ def loads_of_step(rows, tick_time, time, h, whole):  # type: ignore[no-untyped-d
 
 
 @entry
-def load_at(rows, time):  # type: ignore[no-untyped-def]
+def load_at(rows, time):
     """Return the torque [N m] of the terms at a tick at `time` [s]."""
     return load(rows, time, time)

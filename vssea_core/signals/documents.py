@@ -15,7 +15,16 @@ def _angle(default: float, title: str, symbol: str, meaning: str = "") -> float:
 
 
 def _seconds(default: float | None, title: str, meaning: str, low: float = 0.0, high: float = 1e4) -> float:
-    field: float = parameter(default, title, unit="s", low=low, high=high, typical=(low, min(10.0, high)), step=0.01, meaning=meaning)
+    field: float = parameter(
+        default, title, unit="s", low=low, high=high, typical=(low, min(10.0, high)), step=0.01, meaning=meaning
+    )
+    return field
+
+
+def _duration(default: float) -> float:
+    field: float = parameter(
+        default, "duration", unit="s", low=0.02, high=60.0, typical=(0.2, 4.0), step=0.01, meaning="Time of one move."
+    )
     return field
 
 
@@ -32,7 +41,9 @@ class SineReference(Part):
         meaning="Frequency of the sine.",
     )
     offset: float = _angle(0.0, "offset", "r₀")
-    fade_in_s: float = _seconds(1.0, "fade-in", "Time over which the reference grows from zero, with continuous snap; 0 = none.", high=60.0)
+    fade_in_s: float = _seconds(
+        1.0, "fade-in", "Time over which the reference grows from zero, with continuous snap; 0 = none.", high=60.0
+    )
 
 
 class MoveReference(Part):
@@ -41,7 +52,7 @@ class MoveReference(Part):
     kind: Literal["move"] = kind("move")
     origin: float = _angle(0.0, "from", "r_a")
     target: float = _angle(0.5, "to", "r_b")
-    duration_s: float = parameter(1.0, "duration", unit="s", low=0.02, high=60.0, typical=(0.2, 4.0), step=0.01, meaning="Time of one move.")
+    duration_s: float = _duration(1.0)
     dwell_s: float = _seconds(1.0, "dwell", "Rest between two moves.", high=60.0)
     repeat: bool = choice(True, "to and fro", meaning="Moves back after the dwell, and so on.")
     start_s: float = _seconds(0.5, "start", "Time of the first move, counted from when this reference is set.")
@@ -83,7 +94,7 @@ class MoveStiffness(Part):
     stiffness: float = _stiffness(200.0, "stiffness before", "k_a")
     target: float = _stiffness(400.0, "stiffness after", "k_b")
     start_s: float = _seconds(1.0, "start", "Time at which the move starts, counted from when it is set.")
-    duration_s: float = parameter(0.5, "duration", unit="s", low=0.02, high=60.0, typical=(0.2, 4.0), step=0.01, meaning="Time of the move.")
+    duration_s: float = _duration(0.5)
 
 
 StiffnessReference = Annotated[ConstantStiffness | MoveStiffness, Field(discriminator="kind")]
@@ -91,7 +102,7 @@ StiffnessReference = Annotated[ConstantStiffness | MoveStiffness, Field(discrimi
 
 class _Timed(Part):
     start_s: float = _seconds(0.0, "from", "Scenario time at which it starts; takes effect at the next tick.")
-    end_s: float | None = _seconds(None, "until", "Scenario time at which it ends; empty = never.")  # type: ignore[assignment]
+    end_s: float | None = _seconds(None, "until", "Scenario time at which it ends; empty = never.")
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:

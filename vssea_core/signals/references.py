@@ -20,18 +20,16 @@ TIME_SLACK_S = 1e-9
 def reference_row(reference: Reference, set_at_s: float = 0.0) -> NDArray[np.float64]:
     """Return the reference as 8 numbers for the kernel; the first is its kind, the last when it was set [s]."""
     if reference.kind == "sine":
-        numbers = (SINE, reference.amplitude, 2.0 * math.pi * reference.frequency_hz, reference.offset, reference.fade_in_s, 0, 0)
-    elif reference.kind == "move":
-        numbers = (
-            MOVE, reference.origin, reference.target, reference.start_s, reference.duration_s, reference.dwell_s, float(reference.repeat),
-        )  # fmt: skip
-    else:
-        numbers = (STEP, reference.origin, reference.target, reference.start_s, 0.0, reference.dwell_s, float(reference.repeat))
-    return np.array([*numbers, set_at_s])
+        frequency = 2.0 * math.pi * reference.frequency_hz
+        numbers = (SINE, reference.amplitude, frequency, reference.offset, reference.fade_in_s, 0.0, 0.0)
+        return np.array([*numbers, set_at_s])
+    kind, duration = (MOVE, reference.duration_s) if reference.kind == "move" else (STEP, 0.0)
+    places = (reference.origin, reference.target, reference.start_s)
+    return np.array([kind, *places, duration, reference.dwell_s, float(reference.repeat), set_at_s])
 
 
 @inlined
-def smooth_step(x):  # type: ignore[no-untyped-def]
+def smooth_step(x):
     """Return the 9th-order polynomial from 0 to 1 over 0 <= x <= 1, flat to the fourth derivative, and four derivatives."""
     if x <= 0.0:
         return Target(0.0, 0.0, 0.0, 0.0, 0.0)
@@ -50,7 +48,7 @@ def smooth_step(x):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def moved(origin, target, time, duration):  # type: ignore[no-untyped-def]
+def moved(origin, target, time, duration):
     """Return the rest-to-rest move [rad] of `duration` [s] at `time` since its start, and four derivatives."""
     s = smooth_step(time / duration)
     rate = 1.0 / duration
@@ -65,7 +63,7 @@ def moved(origin, target, time, duration):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def faded_sine(amplitude, w, offset, fade_in_s, time):  # type: ignore[no-untyped-def]
+def faded_sine(amplitude, w, offset, fade_in_s, time):
     """Return (offset + amplitude sin(w t)) times a smooth fade-in, and four derivatives by Leibniz' rule."""
     sine = amplitude * math.sin(w * time)
     cosine = amplitude * math.cos(w * time)
@@ -83,7 +81,7 @@ def faded_sine(amplitude, w, offset, fade_in_s, time):  # type: ignore[no-untype
 
 
 @inlined
-def reference_at(row, now):  # type: ignore[no-untyped-def]
+def reference_at(row, now):
     """Return the Target of a reference row at scenario time `now` [s]."""
     time = now - row[7]
     if row[0] == SINE:
@@ -103,7 +101,7 @@ def reference_at(row, now):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def with_transition(target, y):  # type: ignore[no-untyped-def]
+def with_transition(target, y):
     """Return `target` plus what is left of earlier references.
 
     `y` holds (D + w)^i z, i = 0..4, of a signal z that obeys (D + w)^5 z = 0.
@@ -118,7 +116,7 @@ def with_transition(target, y):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def decay_transition(y, time):  # type: ignore[no-untyped-def]
+def decay_transition(y, time):
     """Advance the transition `y` (5) by `time` [s], exactly, in place."""
     shrink = math.exp(-TRANSITION_RATE * time)
     t = time
@@ -130,7 +128,7 @@ def decay_transition(y, time):  # type: ignore[no-untyped-def]
 
 
 @entry
-def change_reference(old, new, now, transition):  # type: ignore[no-untyped-def]
+def change_reference(old, new, now, transition):
     """Add to `transition` (5) what keeps the reference continuous as row `old` gives way to `new` at `now` [s].
 
     A step is raw by nature: changing to one drops what was left.

@@ -45,14 +45,24 @@ SLEWED_SIZE = 4  # slewed command, filter output, its rate and acceleration
 
 
 def slew_row(
-    reference: StiffnessReference, tuning: Tuning, mechanism: StiffnessMechanism, sample_time_s: float, set_at_s: float = 0.0
+    reference: StiffnessReference,
+    tuning: Tuning,
+    mechanism: StiffnessMechanism,
+    sample_time_s: float,
+    set_at_s: float = 0.0,
 ) -> NDArray[np.float64]:
     """Return the numbers of a Slew for the kernel."""
     constant = tuning.model.spring_constant
     start = stiffness_motor_position(reference.stiffness, constant)
     timing = (CONSTANT, start, start, 0.0, 1.0)
     if reference.kind == "move":
-        timing = (MOVE, start, stiffness_motor_position(reference.target, constant), reference.start_s, reference.duration_s)
+        timing = (
+            MOVE,
+            start,
+            stiffness_motor_position(reference.target, constant),
+            reference.start_s,
+            reference.duration_s,
+        )
     return np.array(
         Slew(
             *timing,
@@ -68,7 +78,7 @@ def slew_row(
 
 
 @inlined
-def commanded(slew, now):  # type: ignore[no-untyped-def]
+def commanded(slew, now):
     """Return the commanded stiffness motor position [rad] at scenario time `now` [s]."""
     if slew.kind == CONSTANT:
         return slew.theta_to
@@ -76,7 +86,7 @@ def commanded(slew, now):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def advance_stiffness(slew, slewed, now, tau_s, sample_time_s):  # type: ignore[no-untyped-def]
+def advance_stiffness(slew, slewed, now, tau_s, sample_time_s):
     """Return the StiffnessTarget at `now` [s] and whether its slew was limited; advance `slewed` (4) by one sample.
 
     The slew obeys |dk/dt| <= 3000 N m/rad/s, the motor's speed, and, under a spring torque `tau_s` [N m], the motor torque

@@ -9,7 +9,13 @@ import math
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from vssea_core.actuator.drive import (
-    END_STOP, LEAF_TORQUE, STIFFNESS_RATE, Heat, limit_motor_torque, limit_stiffness_torque, warmed,
+    END_STOP,
+    LEAF_TORQUE,
+    STIFFNESS_RATE,
+    Heat,
+    limit_motor_torque,
+    limit_stiffness_torque,
+    warmed,
 )  # fmt: skip
 from vssea_core.actuator.dynamics import PlantState, advance_plant, dry_friction
 from vssea_core.actuator.sensors import measure
@@ -27,7 +33,7 @@ FARTHEST = 1000.0  # rad; nothing that runs on purpose gets there
 
 
 @inlined
-def health(state):  # type: ignore[no-untyped-def]
+def health(state):
     """Return RUNNING, or why a PlantState cannot go on."""
     total = (
         state.theta_l + state.omega_l + state.theta_e + state.omega_e + state.theta_ms + state.omega_ms
@@ -43,7 +49,21 @@ def health(state):  # type: ignore[no-untyped-def]
 
 
 @entry
-def run(rig_row, before, prepared, reference, slew_row, link_terms, motor_terms, enabled, tuning_id, state, first, count, rows):  # type: ignore[no-untyped-def]
+def run(
+    rig_row,
+    before,
+    prepared,
+    reference,
+    slew_row,
+    link_terms,
+    motor_terms,
+    enabled,
+    tuning_id,
+    state,
+    first,
+    count,
+    rows,
+):
     """Advance `state` in place by `count` samples from sample `first`; return how many went well, and why it ended.
 
     Each sample is written to a row of `rows` (columns of channels.CHANNELS). `before` is the tuning in force until `first`,

@@ -35,6 +35,10 @@ def _peak(values: Rows) -> float:
     return float(np.max(np.abs(values))) if len(values) else 0.0
 
 
+def _of(channel: str, statistic: Callable[[Rows], float]) -> Callable[[Rows], float]:
+    return lambda rows: statistic(_column(rows, channel))
+
+
 TORQUE_LIMITS = sum(limit.bit for limit in LIMITS if limit.name.startswith("motor_"))
 
 
@@ -44,21 +48,28 @@ def _saturated(rows: Rows) -> float:
 
 
 METRICS: tuple[Metric, ...] = (
-    Metric("peak_error", "peak error", "rad", "Largest |reference - link| in the window.", lambda rows: _peak(_column(rows, "error"))),
-    Metric("rms_error", "RMS error", "rad", "Root mean square of reference - link.", lambda rows: _rms(_column(rows, "error"))),
-    Metric("peak_torque", "peak torque", "N·m", "Largest applied motor torque.", lambda rows: _peak(_column(rows, "motor_torque"))),
-    Metric("rms_torque", "RMS torque", "N·m", "Root mean square of the applied motor torque.", lambda rows: _rms(_column(rows, "motor_torque"))),
+    Metric("peak_error", "peak error", "rad", "Largest |reference - link|.", _of("error", _peak)),
+    Metric("rms_error", "RMS error", "rad", "Root mean square of reference - link.", _of("error", _rms)),
+    Metric("peak_torque", "peak torque", "N·m", "Largest applied motor torque.", _of("motor_torque", _peak)),
     Metric(
-        "torque_chatter", "torque chatter", "N·m",
+        "rms_torque", "RMS torque", "N·m", "Root mean square of the applied motor torque.", _of("motor_torque", _rms)
+    ),
+    Metric(
+        "torque_chatter",
+        "torque chatter",
+        "N·m",
         "Root mean square of the change of the motor torque from one sample to the next.",
-        lambda rows: _rms(np.diff(_column(rows, "motor_torque"))),
+        _of("motor_torque", lambda torque: _rms(np.diff(torque))),
     ),
     Metric("saturated", "saturated", "%", "Share of samples in which a limit held the motor torque back.", _saturated),
     Metric(
-        "observer_error", "observer error", "N·m", "Root mean square of link disturbance - estimate.",
+        "observer_error",
+        "observer error",
+        "N·m",
+        "Root mean square of link disturbance - estimate.",
         lambda rows: _rms(_column(rows, "link_disturbance") - _column(rows, "link_disturbance_estimate")),
     ),
-)  # fmt: skip
+)
 
 
 def metrics(rows: Rows) -> dict[str, float]:

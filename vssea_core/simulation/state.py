@@ -1,9 +1,8 @@
 """The arrays a run works on: parameters from the document, and the one state that a live session and a simulation share."""
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
-
-import math
 
 import numpy as np
 from numba.np.unsafe.ndarray import to_fixed_tuple
@@ -131,7 +130,7 @@ _TIMING_AT = _ENCODERS_AT + ENCODERS_SIZE
 
 
 @inlined
-def loaded_rig(row):  # type: ignore[no-untyped-def]
+def loaded_rig(row):
     """Return the Rig of an array made by `rig_row`."""
     return Rig(
         Plant(*to_fixed_tuple(row[:PLANT_SIZE], PLANT_SIZE)),

@@ -1,6 +1,7 @@
 import { element, setText } from "../element.js";
 
 const LINES = 200;
+const MACHINES = new Set(["server", "session", "rig"]);
 
 /** Who did what and when, newest on top; warnings and faults are also announced. */
 export class EventLog {
@@ -27,7 +28,7 @@ export class EventLog {
       { class: `log-${severity}`, title: `${when.toLocaleString()}  ${text}${who ? `  (${who})` : ""}` },
       element("time", { datetime: wall_time }, when.toLocaleTimeString([], { hour12: false })),
       element("span", { class: "log-text" }, text),
-      who && who !== "server" ? element("span", { class: "log-who" }, who) : null,
+      who && !MACHINES.has(who) ? element("span", { class: "log-who" }, who) : null,
     );
   }
 }

@@ -22,13 +22,13 @@ export class NumberRow extends ParameterRow {
     this.slider = slider;
     this.box = box;
     this.scale = new SliderScale(field);
-    this.stream = new SliderStream((value) => this.send(value, this.#gesture));
+    this.stream = new SliderStream((value) => this.send(value, this.#gesture).finally(() => this.settle()));
     this.#listenToSlider();
     this.#listenToBox();
   }
 
   get isBusy() {
-    return this.#isDragging || this.#isTyping;
+    return this.#isDragging || this.#isTyping || this.stream.isWaiting;
   }
 
   words(value) {
@@ -61,7 +61,7 @@ export class NumberRow extends ParameterRow {
     });
     const release = () => {
       this.#isDragging = false;
-      this.stream.flush();
+      this.settle();
     };
     slider.addEventListener("change", release);
     slider.addEventListener("pointerup", release);

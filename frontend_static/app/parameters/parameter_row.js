@@ -61,7 +61,7 @@ export class ParameterRow {
       return false;
     } finally {
       this.#pending -= 1;
-      if (!this.#pending) this.#settle();
+      this.settle();
     }
   }
 
@@ -81,14 +81,16 @@ export class ParameterRow {
     if (text && tone === "refused") this.#noteTimer = setTimeout(() => this.say(""), 2 * NOTE_MS);
   }
 
-  #settle() {
+  /** With nothing under way and no hand on it, the row shows what the server last said. */
+  settle() {
+    if (this.#pending || this.isBusy || this.echoed === undefined) return;
     this.root.classList.remove("is-pending");
-    if (!this.isBusy) this.show(this.echoed);
+    this.show(this.echoed);
   }
 
   #left() {
     if (this.root.dataset.tone === "info") this.say("");
-    if (!this.#pending && !this.isBusy && this.echoed !== undefined) this.show(this.echoed);
+    this.settle();
   }
 
   #mark() {

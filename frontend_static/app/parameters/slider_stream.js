@@ -1,28 +1,35 @@
 const PERIOD_MS = 1000 / 30;
 
-/** Passes on the values of a moving slider at 30 Hz; the last one always. */
+/**
+ * Passes on the values of a moving slider: at most 30 a second, one at a time, always the newest, and the last one
+ * for certain. A slow answer thins the values out; it never queues them.
+ */
 export class SliderStream {
-  #timer = null;
   #waiting = null;
-  #sentAt = -Infinity;
+  #isBusy = false;
 
-  /** @param {(value: number) => void} send */
+  /** @param {(value: number) => Promise<any>} send must not reject */
   constructor(send) {
     this.send = send;
   }
 
-  move(value) {
-    this.#waiting = { value };
-    if (this.#timer === null) this.#timer = setTimeout(() => this.flush(), Math.max(0, this.#sentAt + PERIOD_MS - performance.now()));
+  /** Whether a newer value than the one under way has still to be sent. */
+  get isWaiting() {
+    return this.#waiting !== null;
   }
 
-  flush() {
-    clearTimeout(this.#timer);
-    this.#timer = null;
-    if (!this.#waiting) return;
-    const { value } = this.#waiting;
-    this.#waiting = null;
-    this.#sentAt = performance.now();
-    this.send(value);
+  move(value) {
+    this.#waiting = { value };
+    if (!this.#isBusy) this.#drain();
+  }
+
+  async #drain() {
+    this.#isBusy = true;
+    while (this.#waiting) {
+      const { value } = this.#waiting;
+      this.#waiting = null;
+      await Promise.all([this.send(value), new Promise((resolve) => setTimeout(resolve, PERIOD_MS))]);
+    }
+    this.#isBusy = false;
   }
 }

@@ -35,7 +35,7 @@ export const CHARTS = [
     name: "Disturbance and its estimate",
     left: { unit: "N·m", smallest: 1 },
     series: [
-      { channel: "link_disturbance", label: "link disturbance", colour: "disturbance", width: 2.5 },
+      { channel: "link_disturbance", label: "disturbance", colour: "disturbance", width: 2.5 },
       { channel: "link_disturbance_estimate", label: "estimate", colour: "link", width: 1.25 },
       { channel: "motor_disturbance", label: "on motor", colour: "motor-disturbance", width: 2.5, isHidden: true },
       { channel: "motor_disturbance_estimate", label: "its estimate", colour: "torque", width: 1.25, isHidden: true },
@@ -48,7 +48,7 @@ export const CHARTS = [
     right: { unit: "mrad", factor: 1e3, smallest: 2e-3 },
     series: [
       { channel: "deflection", colour: "deflection", side: "right" },
-      { channel: "stiffness_reference", label: "commanded", colour: "reference", dash: [5, 4] },
+      { channel: "stiffness_reference", label: "asked", colour: "reference", dash: [5, 4] },
       { channel: "stiffness", colour: "stiffness", isFirstInLegend: true },
     ],
   },

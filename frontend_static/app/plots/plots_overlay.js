@@ -1,7 +1,5 @@
 import { setText } from "../element.js";
 
-const HINTS = { ready: "Press ▶ to start.", starting: "" };
-
 /** What the plots say while there is nothing to plot. */
 export class PlotsOverlay {
   constructor(root, session) {
@@ -16,7 +14,6 @@ export class PlotsOverlay {
     const isWanted = !snapshot || snapshot.state === "starting" || store.length === 0;
     this.box.hidden = !isWanted || (!isConnected && snapshot !== null);
     if (!isWanted) return;
-    const sentence = snapshot ? snapshot.sentence : "Connecting to the session…";
-    setText(this.box, [sentence, HINTS[snapshot?.state]].filter(Boolean).join(" "));
+    setText(this.box, snapshot ? snapshot.sentence : "Connecting to the session…");
   }
 }

@@ -81,11 +81,16 @@ export class LiveSession extends EventTarget {
   }
 
   #log(events) {
-    const known = new Set(this.events.map((event) => event.number).filter((number) => number !== null));
-    const fresh = events.filter((event) => event.number === null || !known.has(event.number));
+    const known = new Set(this.events.map(identity));
+    const fresh = events.filter((event) => !known.has(identity(event)));
     if (!fresh.length) return;
     this.events = [...this.events, ...fresh].slice(-EVENTS_KEPT);
     this.dispatchEvent(new CustomEvent("log", { detail: fresh }));
     if (fresh.some((event) => event.kind === "preset")) this.dispatchEvent(new Event("presets"));
   }
+}
+
+/** A restarted server counts its events anew, so the number alone does not tell them apart. */
+function identity({ number, wall_time, text }) {
+  return `${number} ${wall_time} ${text}`;
 }

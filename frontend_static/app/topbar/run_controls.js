@@ -52,7 +52,7 @@ export class RunControls {
     const isRunning = RUNNING.has(state);
     this.pauseButton.disabled = !isConnected || !(isRunning || STARTABLE.has(state));
     this.pauseButton.dataset.icon = isRunning || !STARTABLE.has(state) ? "pause" : "resume";
-    const label = isRunning ? "Pause" : state === "ready" ? "Start" : "Resume";
+    const label = isRunning ? "Pause" : state === "ready" ? "Run" : "Resume";
     this.pauseButton.setAttribute("aria-label", label);
     this.pauseButton.title = this.pauseButton.disabled && isConnected ? `${label}: not while ${state}. Reset first.` : `${label} (Space)`;
     this.stepButton.hidden = state !== "paused";

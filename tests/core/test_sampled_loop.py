@@ -1,0 +1,161 @@
+"""The linearised sampled loop: the reference's matrix, the growth of simulations, and a refusal whose remedy works."""
+
+import re
+
+import numpy as np
+import pytest
+
+from tests.core.as_reference import reference_controller, reference_model
+from tests.core.experiment import Experiment
+from tests.reference.linear import closed_loop_matrix as reference_matrix
+from vssea_core.actuator.parameters import Actuator, EquilibriumMotor, Link, Timing
+from vssea_core.analysis.refusal import unstable_because
+from vssea_core.analysis.sampled_loop import closed_loop_matrix, stability
+from vssea_core.control.tuning import (
+    ControllerModel,
+    Observer,
+    PositionObserver,
+    SlidingMode,
+    StateFeedback,
+    Tuning,
+    VelocityObserver,
+)
+from vssea_core.scenario import Scenario
+from vssea_core.scenarios import NOMINAL, REALISTIC
+from vssea_core.signals.documents import ConstantStiffness, StepReference
+from vssea_core.simulation.state import plant_numbers
+
+OBSERVERS: dict[str, Observer] = {
+    "exact": VelocityObserver(bandwidth=80.0),
+    "first_order_hold": VelocityObserver(bandwidth=80.0, discretisation="first_order_hold"),
+    "position": PositionObserver(bandwidth=80.0),
+}
+observers = pytest.mark.parametrize("observer", OBSERVERS.values(), ids=OBSERVERS)
+PLANT_OF_LOOP, CHANNEL = (0, 1, 2, 3, 6), 6
+HEAVY = Actuator(link=Link(inertia=0.3))
+
+
+def loop_block(matrix: np.ndarray, delay: int) -> tuple[np.ndarray, np.ndarray]:
+    """Split the matrix in the loop of link and motor, and what the stiffness axis and the rest put into it."""
+    channels = 9 + 2 * delay
+    loop = [*PLANT_OF_LOOP, 7, *([9] if delay else []), *range(channels, channels + 2 * CHANNEL), channels + 3 * CHANNEL]
+    others = [i for i in range(len(matrix)) if i not in loop]
+    return matrix[np.ix_(loop, loop)], matrix[np.ix_(loop, others)]
+
+
+def power_sums(matrix: np.ndarray, count: int = 20) -> np.ndarray:
+    """Sums of the powers of all eigenvalues: smooth where repeated poles split, and blind to eigenvalues of zero."""
+    scale = np.max(np.abs(np.linalg.eigvals(matrix)))
+    powers = [np.trace(np.linalg.matrix_power(matrix / scale, n)) for n in range(1, count + 1)]
+    return np.array([scale, *powers])
+
+
+@observers
+@pytest.mark.parametrize("delay", [0, 1])
+@pytest.mark.parametrize("lag", [0.0, 1.6e-4])
+@pytest.mark.parametrize("inertia", [0.1, 0.14])
+def test_the_matrix_has_the_eigenvalues_of_the_references(
+    observer: Observer, delay: int, lag: float, inertia: float
+) -> None:
+    tuning = Tuning(observer=observer)
+    timing = Timing(compute_delay_samples=delay)
+    actuator = Actuator(link=Link(inertia=inertia), motor=EquilibriumMotor(damping=6.0))
+    matrix = closed_loop_matrix(tuning, timing, lag, 200.0, plant_numbers(actuator, 1e-3))
+    loop, coupling = loop_block(matrix, delay)
+    assert np.abs(coupling[:4]).max() < 1e-5, "at zero deflection the stiffness axis does not move the link"
+
+    model = reference_model(tuning)
+    plant = type(model)(link_inertia=inertia, motor_damping=6.0, torque_lag_s=lag)
+    expected = reference_matrix(reference_controller(tuning), plant, model, 200.0, 200.0, 1e-3, delay)
+    assert np.allclose(power_sums(loop), power_sums(expected), rtol=2e-4, atol=2e-4)
+
+
+def test_inside_the_layer_the_matrix_is_that_of_the_references_sliding_law() -> None:
+    tuning = Tuning(controller=SlidingMode(switching_gain=2e4))
+    loop, _ = loop_block(closed_loop_matrix(tuning, Timing(), 0.0, 200.0), 0)
+    model = reference_model(tuning)
+    expected = reference_matrix(reference_controller(tuning), model, model, 200.0, 200.0, 1e-3, 0)
+    assert np.allclose(power_sums(loop), power_sums(expected), rtol=2e-4, atol=2e-4)
+
+
+@observers
+def test_an_unstable_simulation_grows_by_the_radius(observer: Observer) -> None:
+    """Link three times as heavy as believed, one sample of delay: small signals grow as the matrix says."""
+    timing = Timing(compute_delay_samples=1)
+    tuning = Tuning(observer=observer)
+    found = stability(tuning, timing, 0.0, 200.0, plant_numbers(HEAVY, 1e-3))
+    assert not found.stable
+    assert found.radius > 1.003
+    scenario = Scenario(actuator=HEAVY, timing=timing, tuning=tuning, reference=StepReference(origin=0.0, target=0.0))
+    experiment = Experiment(scenario)
+    experiment.state[0] = experiment.state[2] = 1e-9
+    y = experiment.advance(1600)["link_position"][800:]
+    stride = 20  # the dominant pair alone is left: y[k+2s] = a y[k+s] - radius^2s y[k]
+    columns = np.column_stack([y[stride:-stride], y[: -2 * stride]])
+    scale = found.radius ** -np.arange(len(columns), dtype=float)[:, None]
+    product = -np.linalg.lstsq(columns * scale, y[2 * stride :] * scale[:, 0], rcond=None)[0][1]
+    assert product ** (0.5 / stride) == pytest.approx(found.radius, abs=1e-4)
+
+
+@pytest.mark.parametrize("stiffness", [20.0, 50.0, 200.0, 500.0, 1000.0])
+@pytest.mark.parametrize("scenario", [NOMINAL, REALISTIC], ids=lambda scenario: scenario.name)
+def test_the_ready_tunings_are_stable_over_the_whole_stiffness_range(scenario: Scenario, stiffness: float) -> None:
+    lag = scenario.actuator.motor.torque_lag_s
+    assert unstable_because(scenario.tuning, scenario.timing, lag, stiffness) is None
+
+
+REFUSED = {
+    "too fast poles": Tuning(controller=StateFeedback(natural_frequency=400.0), observer=PositionObserver()),
+    "too fast an observer": Tuning(
+        controller=StateFeedback(natural_frequency=60.0), observer=PositionObserver(bandwidth=900.0)
+    ),
+    "too thin a layer": Tuning(controller=SlidingMode(switching_gain=2e6), observer=PositionObserver()),
+}
+REMEDY = re.compile(r"(surface poles|poles|a switching gain|an observer bandwidth) up to about ([0-9.e+]+)")
+
+
+def remedied(tuning: Tuning, what: str, value: float) -> Tuning:
+    part, field = {
+        "poles": ("controller", "natural_frequency"),
+        "surface poles": ("controller", "surface_pole"),
+        "a switching gain": ("controller", "switching_gain"),
+        "an observer bandwidth": ("observer", "bandwidth"),
+    }[what]
+    changed = getattr(tuning, part).model_copy(update={field: value})
+    return tuning.model_copy(update={part: changed})
+
+
+@pytest.mark.parametrize("tuning", REFUSED.values(), ids=REFUSED)
+def test_a_refusal_names_remedies_and_each_of_them_is_stable(tuning: Tuning) -> None:
+    timing = Timing(compute_delay_samples=1)
+    reason = unstable_because(tuning, timing, 1.6e-4, 200.0)
+    assert reason is not None
+    assert reason.count(". ") == 0, "one sentence"
+    assert "unstable even with its own model at 200 N·m/rad" in reason
+    remedies = REMEDY.findall(reason)
+    assert remedies, reason
+    for what, value in remedies:
+        better = remedied(tuning, what, float(value))
+        assert stability(better, timing, 1.6e-4, 200.0).stable, (what, value)
+
+
+def test_a_refused_tuning_indeed_runs_away() -> None:
+    scenario = REALISTIC.model_copy(
+        update={"tuning": REFUSED["too fast poles"], "stiffness_reference": ConstantStiffness(), "duration_s": 2.0}
+    )
+    run = Experiment(scenario).advance(2000)
+    assert np.abs(np.diff(run["motor_torque"])).mean() > 20.0
+
+
+def test_a_model_far_from_the_plant_is_judged_with_that_plant() -> None:
+    believed = Tuning(model=ControllerModel(link_inertia=0.3))
+    timing = Timing(compute_delay_samples=1)
+    assert stability(believed, timing, 0.0, 200.0).stable
+    assert not stability(Tuning(), timing, 0.0, 200.0, plant_numbers(HEAVY, 1e-3)).stable
+
+
+def test_sgn_has_no_linear_loop_to_judge() -> None:
+    sgn = Tuning(controller=SlidingMode(switch="sgn"))
+    assert unstable_because(sgn, Timing(), 0.0, 200.0) is None
+    with pytest.raises(ValueError, match="choose a boundary layer"):
+        closed_loop_matrix(sgn, Timing(), 0.0, 200.0)
