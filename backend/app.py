@@ -2,6 +2,7 @@
 
 import gc
 import importlib.resources
+import tempfile
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -30,6 +31,7 @@ def create_app(settings: Settings) -> FastAPI:
     pool = Pool()
     session = Session(settings, pool, store)
     scene = SceneProcess(session.ring_name)
+    answers = tempfile.TemporaryDirectory(prefix="vssea-")
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
@@ -43,6 +45,7 @@ def create_app(settings: Settings) -> FastAPI:
         await session.close()
         await pool.stop()
         store.close()
+        answers.cleanup()
 
     app = FastAPI(
         title="VSSEA", version=__version__, lifespan=lifespan, docs_url=None, redoc_url=None,
@@ -50,7 +53,7 @@ def create_app(settings: Settings) -> FastAPI:
         middleware=[Middleware(Guard, settings=settings)],
     )  # fmt: skip
     add_problem_handlers(app)
-    app.include_router(resources(session, pool, store))
+    app.include_router(resources(session, pool, store, answers.name))
     app.include_router(live(session))
     app.include_router(documentation())
     # The guard has checked Host and Origin of every websocket before this.

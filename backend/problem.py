@@ -61,6 +61,10 @@ def _field_error(item: Any, model: type[BaseModel], root: str) -> FieldError:
         return FieldError(name, None, f"{item['ctx']['error']}.")
     if kind == "missing":
         return FieldError(name, None, "it is missing; expected a value")
+    if kind == "json_invalid":
+        return FieldError(name, None, f"not JSON: {item['ctx']['error']}")
+    if kind == "union_tag_not_found":
+        return FieldError(f"{name}.kind", None, "it is missing; expected a kind")
     if kind in ("union_tag_invalid", "literal_error"):
         return FieldError(
             name, value, f"expected one of {item['ctx'].get('expected_tags') or item['ctx'].get('expected')}"
@@ -96,7 +100,7 @@ def _walk(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[list
     for part in location:
         alternatives = [
             m
-            for m in _models(here)
+            for m in models_of(here)
             if isinstance(part, str) and m.model_fields.get("kind") and m.model_fields["kind"].default == part
         ]
         if alternatives:
@@ -104,18 +108,19 @@ def _walk(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[list
             known = list(here.model_fields)
             continue
         path.append(str(part))
-        owner = next((m for m in _models(here) if part in m.model_fields), None)
+        owner = next((m for m in models_of(here) if part in m.model_fields), None)
         info = owner.model_fields[str(part)] if owner else info if isinstance(part, int) else None
         if owner:
             here = info.annotation if info else None
-            known = [n for m in _models(here) for n in m.model_fields] or known
+            known = [n for m in models_of(here) for n in m.model_fields] or known
     return path, info, known
 
 
-def _models(annotation: Any) -> list[type[BaseModel]]:
+def models_of(annotation: Any) -> list[type[BaseModel]]:
+    """Return the models that an annotation names, such as the alternatives of a union."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
-    return [m for argument in get_args(annotation) for m in _models(argument)]
+    return [m for argument in get_args(annotation) for m in models_of(argument)]
 
 
 def _worded(value: Any) -> str:

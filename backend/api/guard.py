@@ -5,10 +5,10 @@ pages from using it.
 """
 
 import secrets
-from http.cookies import SimpleCookie
 from urllib.parse import parse_qs, urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import cookie_parser
 from starlette.responses import RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket
@@ -38,7 +38,7 @@ class Guard:
         problem = self._objection(scope)
         if problem is not None:
             await self._refuse(problem, scope, receive, send)
-        elif scope["type"] == "http" and self._token and _query(scope, "token"):
+        elif scope["type"] == "http" and scope["method"] == "GET" and self._token and _query(scope, "token"):
             await self._welcome(scope, receive, send)
         else:
             await self._app(scope, receive, _with_headers(send) if scope["type"] == "http" else send)
@@ -53,7 +53,7 @@ class Guard:
                 f"This server is not called {_name(host)!r}; set VSSEA_ALLOWED_HOSTS if it should be.",
             )
         origin = headers.get("origin")
-        if origin is not None and urlsplit(origin).netloc != host:
+        if origin is not None and _netloc(origin) != host:
             return Problem(
                 403, "Other origin", f"A page from {origin} may not use this server; open it from {host} itself."
             )
@@ -66,17 +66,18 @@ class Guard:
         return None
 
     def _knows_token(self, scope: Scope, headers: Headers) -> bool:
-        cookie = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
         given = (
             headers.get("authorization", "").removeprefix("Bearer "),
-            cookie.value if cookie else "",
+            # Lenient: another program's odd cookie on this host must not hide ours.
+            cookie_parser(headers.get("cookie", "")).get(COOKIE, ""),
             _query(scope, "token"),
         )
         return any(secrets.compare_digest(value.encode(), (self._token or "").encode()) for value in given if value)
 
     async def _welcome(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Put the token of the address into a cookie, and take it out of the address."""
-        response = RedirectResponse(scope["path"], status_code=303)
+        # One slash: two would name another host.
+        response = RedirectResponse("/" + scope["path"].lstrip("/\\"), status_code=303)
         response.set_cookie(
             COOKIE, self._token or "", httponly=True, samesite="strict", secure=scope["scheme"] == "https"
         )
@@ -90,7 +91,17 @@ class Guard:
 
 
 def _name(host: str) -> str:
-    return (urlsplit(f"//{host}").hostname or "").lower()
+    try:
+        return (urlsplit(f"//{host}").hostname or "").lower()
+    except ValueError:
+        return host
+
+
+def _netloc(origin: str) -> str:
+    try:
+        return urlsplit(origin).netloc
+    except ValueError:
+        return ""
 
 
 def _query(scope: Scope, name: str) -> str:

@@ -1,10 +1,13 @@
 """Schema, scenarios, simulations, presets and the session's commands over REST."""
 
 import json
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Body, Query, Request, Response
+from fastapi.responses import FileResponse
 from pydantic import ValidationError
+from starlette.background import BackgroundTask
 
 from backend.compute.pool import JobFailedError, JobRefusedError, Pool
 from backend.presets.store import PresetStore
@@ -42,8 +45,8 @@ async def body_of(request: Request) -> Any:
         raise Problem(400, "Not JSON", f"The body is not JSON: {error}.") from error
 
 
-def resources(session: Session, pool: Pool, store: PresetStore) -> APIRouter:
-    """Return the REST routes."""
+def resources(session: Session, pool: Pool, store: PresetStore, folder: str) -> APIRouter:
+    """Return the REST routes; answers of simulations pass through files in `folder`."""
     router = APIRouter(prefix="/api")
 
     @router.get("/health")
@@ -87,15 +90,15 @@ def resources(session: Session, pool: Pool, store: PresetStore) -> APIRouter:
         except ValidationError as error:
             raise from_validation(error, Scenario) from error
         try:
-            media_type, content = await pool.simulation.run(
-                "simulate_scenario", asked, trajectory, every, allow_unstable, time_limit_s=SIMULATION_LIMIT_S
+            media_type, path = await pool.simulation.run(
+                "simulate_to_file", asked, trajectory, every, allow_unstable, folder, time_limit_s=SIMULATION_LIMIT_S
             )
         except JobRefusedError as refusal:
             sentence = str(refusal)
             raise refused(f"{sentence[:1].upper()}{sentence[1:]}.") from refusal
         except JobFailedError as failure:
             raise Problem(503, "Not computed", f"The simulation could not be computed: {failure}.") from failure
-        return Response(content, media_type=media_type)
+        return FileResponse(path, media_type=media_type, background=BackgroundTask(Path(path).unlink, missing_ok=True))
 
     @router.get("/session")
     def snapshot() -> Document:

@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import tempfile
 from typing import Any
 
 import numpy as np
@@ -52,6 +53,17 @@ def simulate_scenario(scenario: Scenario, form: str, every: int, allow_unstable:
         answer["trajectory"] = {channel.name: thinned[:, INDEX[channel.name]].tolist() for channel in CHANNELS}
         answer["period_s"] = trajectory.period_s * every
     return "application/json", json.dumps(answer, ensure_ascii=False, allow_nan=False).encode()
+
+
+def simulate_to_file(scenario: Scenario, form: str, every: int, allow_unstable: bool, folder: str) -> tuple[str, str]:
+    """Return media type and the path, in `folder`, of what simulate_scenario returns.
+
+    A trajectory is too much for the pipe: its bytes would pass through the web process in one piece.
+    """
+    media_type, content = simulate_scenario(scenario, form, every, allow_unstable)
+    with tempfile.NamedTemporaryFile(dir=folder, delete=False) as file:
+        file.write(content)
+    return media_type, file.name
 
 
 def summary(scenario: Scenario, trajectory: Trajectory) -> dict[str, Any]:

@@ -46,6 +46,7 @@ class ControlLoop:
         self.state: State = "starting"
         self.epoch = 0
         self.leaving = False
+        self._reports: list[Report] = []
 
     def turn(self, late_s: float = 0.0) -> float:
         """Do one turn that started `late_s` too late; return the length [s] of a turn."""
@@ -53,12 +54,14 @@ class ControlLoop:
             self._stop()
         for number, command in self._commands():
             self._report(self._obey(number, command))
-        if self._engine is None or self.state not in TICKING:
-            return IDLE_TURN_S
-        period = self._engine.period_s / self._pace
-        samples = max(1, round(SHORTEST_TURN_S / period))
-        self._advance(samples, late_s)
-        return samples * period
+        length = IDLE_TURN_S
+        if self._engine is not None and self.state in TICKING:
+            period = self._engine.period_s / self._pace
+            samples = max(1, round(SHORTEST_TURN_S / period))
+            self._advance(samples, late_s)
+            length = samples * period
+        self._send_reports()
+        return length
 
     def run(self) -> None:
         """Turn until the web process closes its end of the pipe."""
@@ -175,7 +178,13 @@ class ControlLoop:
         self._report(Changed(state, reason, self.epoch, self._engine.time_s if self._engine else 0.0))
 
     def _report(self, report: Report) -> None:
+        self._reports.append(report)
+
+    def _send_reports(self) -> None:
+        """Send what this turn reported, after its samples: who reads of a change finds it in the ring."""
         try:
-            self._pipe.send(report)
+            for report in self._reports:
+                self._pipe.send(report)
         except OSError:
             self.leaving = True
+        self._reports.clear()

@@ -5,7 +5,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from backend.problem import FieldError, Problem, from_validation, refused
+from backend.problem import FieldError, Problem, from_validation, models_of, refused
 from vssea_core.scenario import Scenario
 
 CONSEQUENCE = "Nothing was changed."
@@ -61,26 +61,31 @@ def _set(target: dict[str, Any], part: str, path: str, value: Any) -> None:
     if not isinstance(here, dict) or last not in here:
         raise _unknown(part, path, here)
     if last == "kind" and here["kind"] != value:
-        _change_kind(here, value)
+        _change_kind(here, value, ".".join((part, *parents)))
     else:
         here[last] = value
 
 
-def _change_kind(here: dict[str, Any], kind: Any) -> None:
-    """Take another kind: its own defaults, and what both kinds share."""
-    shared = _fields_of_kind(kind)
+def _change_kind(here: dict[str, Any], kind: Any, place: str) -> None:
+    """Take another kind at `place`: its own defaults, and what both kinds share."""
+    shared = _fields_of_kind(kind, place)
     kept = {name: value for name, value in here.items() if name in shared and name != "kind"}
     here.clear()
     here.update(kept, kind=kind)
 
 
-def _fields_of_kind(kind: Any) -> set[str]:
-    definitions = Scenario.model_json_schema()["$defs"].values()
-    for definition in definitions:
-        properties = definition.get("properties", {})
-        if properties.get("kind", {}).get("const") == kind and kind is not None:
-            return set(properties)
-    return set()
+def _fields_of_kind(kind: Any, place: str) -> set[str]:
+    """Return the fields of the alternative `kind` at `place`; a reference and a disturbance both have a sine."""
+    alternatives: list[Any] = [Scenario]
+    for name in place.split("."):
+        fields = [model.model_fields[name] for model in alternatives if name in model.model_fields]
+        alternatives = [model for field in fields for model in models_of(field.annotation)]
+    return {
+        name
+        for model in alternatives
+        if "kind" in model.model_fields and model.model_fields["kind"].default == kind
+        for name in model.model_fields
+    }
 
 
 def _unknown(part: str, path: str, here: Any) -> Problem:

@@ -75,7 +75,10 @@ def test_energy_moves_between_spring_and_stiffness_motor() -> None:
     assert np.ptp(own) > 0.05 * energy(run)[0]
 
 
-@given(starts, st.builds(Losses, st.floats(0.0, 1.0), st.floats(0.0, 20.0), st.floats(0.0, 1e-3), st.sampled_from([0.0, 5.6])))
+@given(
+    starts,
+    st.builds(Losses, st.floats(0.0, 1.0), st.floats(0.0, 20.0), st.floats(0.0, 1e-3), st.sampled_from([0.0, 5.6])),
+)
 @settings(deadline=None, max_examples=25)
 def test_with_losses_energy_never_grows(start: PlantState, losses: Losses) -> None:
     run = coasting(plant(losses), start, 200, period=2.5e-4)

@@ -69,7 +69,9 @@ def test_the_exact_form_forgets_any_error_up_to_the_nyquist_frequency(g: float, 
 
 @given(g=st.floats(20.0, 400.0), t=st.floats(5e-4, 2e-3), d=st.lists(st.floats(-10.0, 10.0), min_size=1, max_size=3))
 @settings(deadline=None, max_examples=30)
-def test_the_exact_form_estimates_disturbances_up_to_degree_two_without_error(g: float, t: float, d: list[float]) -> None:
+def test_the_exact_form_estimates_disturbances_up_to_degree_two_without_error(
+    g: float, t: float, d: list[float]
+) -> None:
     settled = math.ceil(45.0 / (g * t))
     errors = velocity_errors(velocity_exact, g, t, Polynomial(d), settled)
     assert np.abs(errors * [1.0, 1.0 / g, 1.0 / g**2]).max() < 1e-6

@@ -23,7 +23,9 @@ class Knowledge:
     link: np.ndarray  # (3,) [rad/s^2, rad/s^3, rad/s^4]
     motor: np.ndarray  # (3,)
     stiffness_motor: np.ndarray  # (3,)
-    theta_ms_estimate: float | None = None  # what the position form's observer makes of theta_ms; None = the measured one
+    theta_ms_estimate: float | None = (
+        None  # what the position form's observer makes of theta_ms; None = the measured one
+    )
 
 
 def switch(sigma: float, layer: float) -> float:

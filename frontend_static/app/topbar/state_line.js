@@ -22,10 +22,9 @@ export class StateLine {
     this.rig.dataset.kind = snapshot.rig.kind;
     if (!isConnected) return this.#say("lost", "No connection", "what is shown is old");
     const word = WORDS[snapshot.state] ?? snapshot.state;
-    const { reason } = snapshot;
     const sentence = snapshot.sentence.replace(`by ${this.session.you} `, "by you ");
     const rest = sentence.toLowerCase().startsWith(word.toLowerCase()) ? sentence.slice(word.length).replace(/^[,:.\s]+/, "") : sentence;
-    this.#say(snapshot.state, word, reason && !sentence.includes(reason) ? `${rest}: ${reason}` : rest);
+    this.#say(snapshot.state, word, rest);
   }
 
   #say(state, word, rest) {

@@ -1,0 +1,45 @@
+"""The 1 kHz loop for a minute, page closed and page open: lateness, execution, overruns, lost samples, processor time."""
+
+import asyncio
+import json
+from contextlib import nullcontext
+
+from benchmarks.live_server import LivePage, Server, live_page, open_page, running_server
+
+DURATION_S = 60.0
+
+
+async def listen(port: int, duration_s: float) -> int:
+    """Take all telemetry for `duration_s` and return how many samples were lost."""
+    async with live_page(port) as socket:
+        page = LivePage(socket)
+        try:
+            async with asyncio.timeout(duration_s):
+                while True:
+                    await page.message()
+        except TimeoutError:
+            return page.lost
+
+
+def measure(server: Server, page_open: bool) -> None:
+    """Print one minute's figures."""
+    with open_page(server.port) if page_open else nullcontext():
+        server.post("/probe/start")
+        before = server.processor_seconds()
+        lost = asyncio.run(listen(server.port, DURATION_S))
+        report = json.loads(server.post("/probe/report"))
+        after = server.processor_seconds()
+    load = {name: 100.0 * (after[name] - before[name]) / DURATION_S for name in before if name in after}
+    others = ", ".join(f"{share:.1f} %" for name, share in load.items() if name != "web")
+    print(f"page {'open' if page_open else 'closed'}: {report['samples']} samples, {report['overruns']} overruns, {lost} lost on the websocket")
+    for name in ("lateness_us", "execution_us"):
+        print(f"  {name:13}" + "   ".join(f"{label} {value:.1f}" for label, value in report[name].items()))
+    print(f"  web process: worst event-loop gap {report['worst_event_loop_gap_ms']} ms, {load['web']:.1f} % of a core; its children: {others}")
+    print(f"  scheduling: {'real-time' if report['real_time'] else 'best effort'}")
+
+
+def main() -> None:
+    """Print both minutes."""
+    with running_server(probed=True) as server:
+        measure(server, page_open=False)
+        measure(server, page_open=True)
