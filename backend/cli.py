@@ -15,13 +15,17 @@ app = typer.Typer(no_args_is_help=True, help="Tune the robust position control o
 
 
 def _settings(**given: Any) -> "Settings":
+    from pydantic_settings import SettingsError
+
     from backend.settings import Settings
 
     try:
         return Settings(**{name: value for name, value in given.items() if value is not None})
     except ValidationError as error:
         first = error.errors()[0]
-        raise typer.BadParameter(f"{'.'.join(map(str, first['loc']))} {first['msg']}".strip()) from error
+        _refuse(f"{'.'.join(map(str, first['loc']))} {first['msg'].removeprefix('Value error, ')}".strip())
+    except SettingsError as error:
+        _refuse(f'{error}; expected JSON, such as ["my-host"]')
 
 
 @app.command()
@@ -32,14 +36,21 @@ def serve(
 ) -> None:
     """Start the dashboard."""
     import uvicorn
+    from sqlalchemy.exc import DBAPIError
 
     from backend.app import create_app
 
     settings = _settings(host=host, port=port, scenario=scenario)
+    try:
+        application = create_app(settings)
+    except (OSError, DBAPIError) as error:
+        _refuse(
+            f"{settings.data_dir} cannot keep presets: {getattr(error, 'orig', error)}; set VSSEA_DATA_DIR to a folder of your own"
+        )
     shown = f"[{settings.host}]" if ":" in settings.host else settings.host
     typer.echo(f"VSSEA on http://{shown}:{settings.port}/  (Ctrl+C ends it)")
     uvicorn.run(
-        create_app(settings), host=settings.host, port=settings.port, log_level="warning", access_log=False,
+        application, host=settings.host, port=settings.port, log_level="warning", access_log=False,
         ws_per_message_deflate=False, ws_ping_interval=5.0, ws_ping_timeout=20.0, timeout_graceful_shutdown=2,
     )  # fmt: skip
 
@@ -64,7 +75,7 @@ def simulate(
     forms = {".csv": "csv", ".json": "json", ".bin": "binary"}
     form = forms.get(output.suffix, "") if output else "none"
     if not form:
-        raise typer.BadParameter(f"{output}: expected a name ending in {', '.join(forms)}")
+        _refuse(f"{output} cannot be written: expected a name ending in {', '.join(forms)}")
     try:
         scenario = SCENARIOS[file] if file in SCENARIOS else Scenario.model_validate_json(_read(file))
         _, content = simulate_scenario(scenario, form, every, allow_unstable)
@@ -74,7 +85,7 @@ def simulate(
     except ValueError as refusal:
         _refuse(str(refusal))
     if output:
-        output.write_bytes(content)
+        _write(output, content)
     typer.echo(json.dumps(json.loads(figures), indent=2, ensure_ascii=False))
 
 
@@ -83,6 +94,13 @@ def _read(file: str) -> str:
         return sys.stdin.read() if file == "-" else Path(file).read_text("utf-8")
     except (OSError, UnicodeDecodeError) as error:
         _refuse(f"{file} cannot be read: {error}; expected a scenario's file or name (nominal, realistic, paper_fig2)")
+
+
+def _write(file: Path, content: bytes) -> None:
+    try:
+        file.write_bytes(content)
+    except OSError as error:
+        _refuse(f"{file} cannot be written: {error}")
 
 
 def _refuse(sentence: str) -> NoReturn:

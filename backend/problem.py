@@ -36,6 +36,9 @@ class Problem(Exception):
         }
 
 
+UNEXPECTED = Problem(500, "Internal error", "An internal error; the server's log has the details.")
+
+
 def refused(detail: str, *errors: FieldError) -> Problem:
     """Return the problem of a value or tuning that was refused."""
     return Problem(422, "Value refused", detail, list(errors))

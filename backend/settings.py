@@ -3,8 +3,10 @@
 from pathlib import Path
 
 import platformdirs
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
+
+from vssea_core.scenarios import SCENARIOS
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
@@ -24,6 +26,13 @@ class Settings(BaseSettings):
     )
     scenario: str = Field("nominal", description="Scenario of the live session at the first start.")
     scene: bool = Field(True, description="Whether the 3D scene runs.")
+
+    @field_validator("scenario")
+    @classmethod
+    def _known_scenario(cls, name: str) -> str:
+        if name not in SCENARIOS:
+            raise ValueError(f"{name!r} is not a ready scenario; expected one of {', '.join(SCENARIOS)}")
+        return name
 
     @model_validator(mode="after")
     def _token_beyond_loopback(self) -> "Settings":

@@ -58,7 +58,9 @@ def running_server(probed: bool = False) -> Iterator[Server]:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    command = ["-m", "benchmarks.probed_server", str(port)] if probed else ["-m", "backend.cli", "serve", "--port", str(port)]
+    command = (
+        ["-m", "benchmarks.probed_server", str(port)] if probed else ["-m", "backend.cli", "serve", "--port", str(port)]
+    )
     with tempfile.TemporaryDirectory() as folder:
         environment = os.environ | {"VSSEA_DATA_DIR": folder}
         process = subprocess.Popen(

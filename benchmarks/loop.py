@@ -31,10 +31,14 @@ def measure(server: Server, page_open: bool) -> None:
         after = server.processor_seconds()
     load = {name: 100.0 * (after[name] - before[name]) / DURATION_S for name in before if name in after}
     others = ", ".join(f"{share:.1f} %" for name, share in load.items() if name != "web")
-    print(f"page {'open' if page_open else 'closed'}: {report['samples']} samples, {report['overruns']} overruns, {lost} lost on the websocket")
+    print(
+        f"page {'open' if page_open else 'closed'}: {report['samples']} samples, {report['overruns']} overruns, {lost} lost on the websocket"
+    )
     for name in ("lateness_us", "execution_us"):
         print(f"  {name:13}" + "   ".join(f"{label} {value:.1f}" for label, value in report[name].items()))
-    print(f"  web process: worst event-loop gap {report['worst_event_loop_gap_ms']} ms, {load['web']:.1f} % of a core; its children: {others}")
+    print(
+        f"  web process: worst event-loop gap {report['worst_event_loop_gap_ms']} ms, {load['web']:.1f} % of a core; its children: {others}"
+    )
     print(f"  scheduling: {'real-time' if report['real_time'] else 'best effort'}")
 
 

@@ -42,7 +42,9 @@ class Probe:
             self._task.cancel()
         piece = self._ring.since(self._first)
         figures = {
-            name: {label: float(np.percentile(piece.samples[:, column], p).round(1)) for label, p in PERCENTILES.items()}
+            name: {
+                label: float(np.percentile(piece.samples[:, column], p).round(1)) for label, p in PERCENTILES.items()
+            }
             for name, column in (("lateness_us", LATENESS_US), ("execution_us", EXECUTION_US))
         }
         return figures | {

@@ -18,7 +18,16 @@ MAX_SAMPLES = 200_000
 class Initial(Part):
     """The actuator starts at rest, in equilibrium under the disturbances that act at t = 0."""
 
-    link_position: float = parameter(0.0, "link position", unit="rad", symbol="θ_l(0)", low=-6.3, high=6.3, step=0.01)
+    link_position: float = parameter(
+        0.0,
+        "link position",
+        unit="rad",
+        symbol="θ_l(0)",
+        low=-6.3,
+        high=6.3,
+        step=0.01,
+        meaning="Where the link rests at t = 0.",
+    )
 
 
 class Scenario(Part):
@@ -34,7 +43,9 @@ class Scenario(Part):
     stiffness_reference: StiffnessReference = ConstantStiffness()
     disturbances: Disturbances = Disturbances()
     initial: Initial = Initial()
-    duration_s: float = parameter(10.0, "duration", unit="s", low=0.001, high=120.0, step=0.1)
+    duration_s: float = parameter(
+        10.0, "duration", unit="s", low=0.001, high=120.0, step=0.1, meaning="Length of a simulation."
+    )
 
     @model_validator(mode="after")
     def _parts_fit(self) -> Self:

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import logging
 from collections import deque
 from contextlib import suppress
 from itertools import count
@@ -10,12 +11,13 @@ from typing import Any
 from fastapi import APIRouter, WebSocket
 from starlette.websockets import WebSocketDisconnect
 
-from backend.problem import Problem
+from backend.problem import UNEXPECTED, Problem
 from backend.session.session import Session
 from backend.telemetry.frames import frames
 from vssea_core import __version__
 from vssea_core.channels import CHANNELS
 
+logger = logging.getLogger(__name__)
 SUBPROTOCOL = "vssea-1"
 BATCH_S = 1.0 / 30.0
 SEND_LIMIT_S = 2.0
@@ -94,7 +96,7 @@ class Page:
         wanted = round(min(history_s, LONGEST_HISTORY_S) / period_s)
         piece = self._session.ring.last(wanted)
         self._next = piece.first + len(piece.samples)
-        for frame in frames(piece, period_s, history=True):
+        for frame in frames(piece, history=True):
             await self._send(frame)
             await asyncio.sleep(0)
 
@@ -111,7 +113,7 @@ class Page:
         missed += piece.lost
         if missed:
             await self._send(json.dumps({"type": "missed", "samples": missed}))
-        for frame in frames(piece, period_s):
+        for frame in frames(piece):
             await self._send(frame)
 
     async def _send(self, content: str | bytes) -> None:
@@ -158,6 +160,9 @@ class Page:
                 result = await self._session.command(command, message.get("arguments"), self.name)
         except Problem as problem:
             self.post({"type": "reply", "id": number, "ok": False, "problem": problem.document()})
+        except Exception:  # every command is answered, else the page waits for nothing
+            logger.exception("command %s failed", command)
+            self.post({"type": "reply", "id": number, "ok": False, "problem": UNEXPECTED.document()})
         else:
             self.post({"type": "reply", "id": number, "ok": True, "result": result})
 

@@ -7,7 +7,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, Response
 from starlette.exceptions import HTTPException
 
-from backend.problem import FieldError, Problem
+from backend.problem import UNEXPECTED, FieldError, Problem
 
 logger = logging.getLogger(__name__)
 
@@ -42,4 +42,4 @@ def add_problem_handlers(app: FastAPI) -> None:
     @app.exception_handler(Exception)
     async def unexpected(_: Request, error: Exception) -> Response:
         logger.error("unexpected error", exc_info=error)
-        return problem_response(Problem(500, "Internal error", "An internal error; the server's log has the details."))
+        return problem_response(UNEXPECTED)

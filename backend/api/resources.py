@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Body, Query, Request, Response
+from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import FileResponse
 from pydantic import ValidationError
 from starlette.background import BackgroundTask
@@ -120,12 +120,15 @@ def resources(session: Session, pool: Pool, store: PresetStore, folder: str) -> 
         """Return the saved tunings, newest first."""
         return [preset.document() for preset in store.list()]
 
-    @router.put("/presets/{name}")
-    async def save(name: str, body: Annotated[Document, Body()]) -> Document:
+    @router.put("/presets/{name}", openapi_extra=_body("nothing, or a tuning"))
+    async def save(name: str, request: Request) -> Document:
         """Save the tuning in force, or the body's `tuning`, under a name."""
         checked = _name(name)
-        if "tuning" not in body:
+        body = await body_of(request)
+        if body == {}:
             return await session.command("save_preset", {"name": checked}, BY)
+        if not isinstance(body, dict) or set(body) != {"tuning"}:
+            raise refused('The body is not as expected; expected {} to save the tuning in force, or {"tuning": ...}.')
         try:
             tuning = Tuning.model_validate_json(json.dumps(body["tuning"]))
         except ValidationError as error:

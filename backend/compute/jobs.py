@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from backend.telemetry.frames import frames
-from backend.telemetry.ring import COLUMNS, EPOCH, WIDTH, Piece
+from backend.telemetry.ring import COLUMNS, EPOCH, PERIOD_S, WIDTH, Piece
 from vssea_core.analysis.refusal import unstable_because
 from vssea_core.channels import CHANNELS, INDEX
 from vssea_core.control.prepared import prepare
@@ -89,4 +89,5 @@ def _as_frames(rows: NDArray[np.float64], period_s: float) -> bytes:
     samples = np.zeros((len(rows), COLUMNS))
     samples[:, :WIDTH] = rows
     samples[:, EPOCH] = 1
-    return b"".join(frames(Piece(0, samples), period_s))
+    samples[:, PERIOD_S] = period_s
+    return b"".join(frames(Piece(0, samples)))

@@ -24,7 +24,7 @@ from backend.loop.messages import (
     Step,
 )  # fmt: skip
 from backend.loop.pacer import Pacer
-from backend.telemetry.ring import EPOCH, EXECUTION_US, LATENESS_US, OVERRUNS, WRITTEN, RingWriter
+from backend.telemetry.ring import EPOCH, EXECUTION_US, LATENESS_US, OVERRUNS, PERIOD_S, RUNS, WRITTEN, RingWriter
 from backend.telemetry.stop_flag import StopFlag
 
 SHORTEST_TURN_S = 1e-3
@@ -41,10 +41,10 @@ class ControlLoop:
         self._ring, self._flag, self._pipe = ring, flag, pipe
         self._pacer = pacer or Pacer()
         self._engine: Engine | None = None
-        self._stops_seen = flag.count
         self._pace = 1.0
         self.state: State = "starting"
-        self.epoch = 0
+        self.epoch = int(ring.header[RUNS])  # goes on where a process that died left off
+        self._stops_seen = flag.count if self.epoch else 0  # a STOP while the session starts counts too
         self.leaving = False
         self._reports: list[Report] = []
 
@@ -87,6 +87,7 @@ class ControlLoop:
         taken_us = (time.perf_counter_ns() - started) * 1e-3
         kept = min(done + 1, len(rows)) if fault else done  # the sample from which it could not go on is worth seeing
         rows[:kept, EPOCH] = self.epoch
+        rows[:kept, PERIOD_S] = engine.period_s
         rows[:kept, LATENESS_US] = late_s * 1e6
         rows[:kept, EXECUTION_US] = taken_us / len(rows)
         self._ring.header[WRITTEN] += kept
@@ -95,9 +96,10 @@ class ControlLoop:
 
     def _stop(self) -> None:
         self._stops_seen = self._flag.count
-        if self._engine is None or self.state in ("stopped", "fault"):
+        if self.state in ("stopped", "fault"):
             return
-        self._engine.enabled = False
+        if self._engine is not None:
+            self._engine.enabled = False
         self._become("stopped", STOP_REASON)
 
     def _commands(self) -> Iterator[tuple[int, Command]]:
@@ -117,7 +119,7 @@ class ControlLoop:
     def _apply(self, command: Command) -> None:
         if isinstance(command, Load):
             self._engine = Engine(command.scenario, command.prepared, command.tuning_id)
-            self.epoch += 1
+            self._begin_run()
             latched = self.state in ("stopped", "fault")
             self._become("ready" if latched or not command.run else "running", None)
             return
@@ -167,8 +169,12 @@ class ControlLoop:
 
     def _reset(self, engine: Engine) -> None:
         engine.restart()
-        self.epoch += 1
+        self._begin_run()
         self._become("ready" if self.state in ("stopped", "fault") else self.state, None)
+
+    def _begin_run(self) -> None:
+        self.epoch += 1
+        self._ring.header[RUNS] = self.epoch
 
     def _way_out(self) -> str:
         return "reset it first" if self.state in ("stopped", "fault") else "it needs no resuming"

@@ -11,6 +11,7 @@ from backend.processes import CONTEXT, started
 
 ENTRY = "backend.loop.process:run_control_process"
 ANSWER_LIMIT_S = 2.0
+START_LIMIT_S = 120.0
 LEAVE_LIMIT_S = 3.0
 
 
@@ -22,18 +23,28 @@ class ControlLink:
         self._numbers = count(1)
         self._waiting: dict[int, asyncio.Future[Done]] = {}
         self._process: BaseProcess | None = None
-        self.ready = asyncio.Event()
+        self._ready: asyncio.Future[None] | None = None
 
     async def start(self, ring_name: str, flag_name: str) -> None:
-        """Start the process; `ready` is set once its kernels are compiled."""
+        """Start the process and return when its kernels are compiled. Raises Problem if it ends or takes too long."""
+        await self.stop()  # never two writers
+        self._ready = asyncio.get_running_loop().create_future()
         self._pipe, theirs = CONTEXT.Pipe()
         arguments = (ring_name, flag_name, theirs)
         self._process = await asyncio.to_thread(started, "vssea control", ENTRY, *arguments)
         theirs.close()
         asyncio.get_running_loop().add_reader(self._pipe.fileno(), self._receive)
+        try:
+            async with asyncio.timeout(START_LIMIT_S):
+                await self._ready
+        except TimeoutError as error:
+            self._process.kill()
+            raise _silent() from error
 
     async def command(self, command: Command) -> Done:
         """Return when the command took effect. Raises Problem if it was refused or the process does not answer."""
+        if self._ready is None or not self._ready.done():
+            raise Problem(503, "Starting", "The session is still starting; try again in a moment.")
         number = next(self._numbers)
         future: asyncio.Future[Done] = asyncio.get_running_loop().create_future()
         self._waiting[number] = future
@@ -48,8 +59,8 @@ class ControlLink:
 
     @property
     def ended(self) -> bool:
-        """Whether the process has ended by itself."""
-        return self._process is not None and self._process.exitcode is not None
+        """Whether the process has ended by itself: its end of the pipe is closed."""
+        return self._process is not None and self._pipe.closed
 
     async def stop(self) -> None:
         """Close the pipe, which ends the process, and make sure that it ended."""
@@ -67,15 +78,16 @@ class ControlLink:
                 self._take(self._pipe.recv())
         except (EOFError, OSError):
             self._close()
-            for future in self._waiting.values():
-                if not future.done():
+            for future in (self._ready, *self._waiting.values()):
+                if future is not None and not future.done():
                     future.set_exception(_silent())
             if self._process is not None:
                 self._lost()
 
     def _take(self, report: Report) -> None:
         if isinstance(report, Ready):
-            self.ready.set()
+            if self._ready is not None and not self._ready.done():
+                self._ready.set_result(None)
         elif isinstance(report, Done | Refused):
             future = self._waiting.get(report.number)
             if future is None or future.done():

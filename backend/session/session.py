@@ -104,8 +104,10 @@ class Session:
         last = await asyncio.to_thread(self._store.last)
         if last is not None:
             self.scenario, self.preset = last.scenario, last.preset
-        await self._link.start(self.ring_name, self._flag.name)
-        await self._link.ready.wait()
+        try:
+            await self._link.start(self.ring_name, self._flag.name)
+        except Problem:
+            return  # its end was told, and Reset starts it anew
         try:
             await self._load(self.scenario)
         except Problem as problem:
@@ -232,7 +234,7 @@ class Session:
             raise Problem(404, "Unknown command", f"There is no command {name!r}; known: {known}.")
         model, method = entry
         try:
-            validated = model.model_validate(arguments or {})
+            validated = model.model_validate({} if arguments is None else arguments)
         except ValidationError as error:
             raise from_validation(error, model, consequence="Nothing was changed.") from error
         return await method(validated, by)
@@ -347,13 +349,12 @@ class Session:
 
     async def reset(self, _: Nothing, by: str) -> Message:
         """Back to t = 0; the only way out of a stop or a fault."""
-        if self._link.ended:
-            self._link.ready.clear()
-            await self._link.start(self.ring_name, self._flag.name)
-            await self._link.ready.wait()
-            await self._load(self.scenario)
-        else:
-            await self._link.command(messages.Reset())
+        async with self._turn:
+            if self._link.ended:
+                await self._link.start(self.ring_name, self._flag.name)
+                await self._load(self.scenario)
+            else:
+                await self._link.command(messages.Reset())
         self._stopped_by = None
         self._note("state", "reset to t = 0", by)
         return {}

@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 from vssea_core.channels import CHANNELS
 
 WIDTH = len(CHANNELS)
-EPOCH, LATENESS_US, EXECUTION_US = WIDTH, WIDTH + 1, WIDTH + 2
-"""Columns after the channels: the run a sample belongs to, how late its tick started and how long it took."""
-COLUMNS = WIDTH + 3
+EPOCH, PERIOD_S, LATENESS_US, EXECUTION_US = WIDTH, WIDTH + 1, WIDTH + 2, WIDTH + 3
+"""Columns after the channels: the run a sample belongs to, its sample time, how late its tick started and how long it took."""
+COLUMNS = WIDTH + 4
 CAPACITY = 65_536
-WRITTEN, OVERRUNS, REAL_TIME = 0, 1, 2
+WRITTEN, OVERRUNS, REAL_TIME, RUNS = 0, 1, 2, 3
 HEADER = 8
-MARGIN = 64  # samples the writer may add while a reader copies
+MARGIN = 1024
+"""Samples that the writer may be filling at a time; a reader keeps that far away from its end."""
 
 Samples = NDArray[np.float64]
 
@@ -56,9 +57,9 @@ class RingWriter:
         return int(self.header[WRITTEN])
 
     def room(self, count: int) -> tuple[int, Samples]:
-        """Return the place of the next samples, at most `count`, as a view (n, COLUMNS) to be filled."""
+        """Return the place of the next samples, at most `count` and MARGIN, as a view (n, COLUMNS) to be filled."""
         place = int(self.header[WRITTEN]) % CAPACITY
-        return place, self.samples[place : min(place + count, CAPACITY)]
+        return place, self.samples[place : min(place + min(count, MARGIN), CAPACITY)]
 
     def announce(self, count: int) -> None:
         """Make the next `count` samples visible."""
@@ -111,7 +112,7 @@ class RingReader:
             return Piece(start, np.empty((0, COLUMNS)), start - first if start > first else 0)
         places = np.arange(start, stop) % CAPACITY
         copied = self._samples[places]
-        overwritten = max(0, self.written - CAPACITY + 1 - start)
+        overwritten = min(stop - start, max(0, self.written - CAPACITY + MARGIN - start))
         return Piece(start + overwritten, copied[overwritten:], start + overwritten - first)
 
     def last(self, count: int) -> Piece:

@@ -3,7 +3,13 @@
  * `bindKeys`. Only a key with `whileTyping` acts in a text field.
  */
 export const KEYS = [
-  { key: "Escape", shown: "Esc", does: "stop", text: "Stop: zero motor torque at once. Also while typing.", whileTyping: true },
+  {
+    key: "Escape",
+    shown: "Esc",
+    does: "stop",
+    text: "Stop: zero motor torque at once. Also while typing.",
+    whileTyping: true,
+  },
   { key: " ", shown: "Space", does: "pauseOrResume", text: "Pause or resume" },
   { key: ".", shown: ".", does: "step", text: "Step one sample, while paused" },
   { key: "f", shown: "F", does: "freeze", text: "Freeze the picture, or follow again; the recording goes on" },
@@ -27,12 +33,19 @@ const NOT_TYPING = new Set(["range", "radio", "checkbox", "button"]);
 
 function isTyping(target) {
   if (target instanceof HTMLInputElement) return !NOT_TYPING.has(target.type);
-  return target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement || target.isContentEditable === true;
+  return (
+    target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement || target.isContentEditable === true
+  );
 }
 
 /** A focused button or link takes the space bar for itself. */
 function isPressable(target) {
-  return target instanceof HTMLButtonElement || target instanceof HTMLAnchorElement || target.tagName === "SUMMARY" || target instanceof HTMLInputElement;
+  return (
+    target instanceof HTMLButtonElement ||
+    target instanceof HTMLAnchorElement ||
+    target.tagName === "SUMMARY" ||
+    target instanceof HTMLInputElement
+  );
 }
 
 /** Listen for all keys of the table. @param {Object<string, () => void>} actions one function for each `does` */

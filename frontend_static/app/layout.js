@@ -24,7 +24,12 @@ export const PANELS = [
       {
         kind: "sliding_mode",
         label: "Sliding mode",
-        fields: ["surface_pole", "switching_gain", "switch", { name: "layer_width", when: (now) => now.switch === "layer" }],
+        fields: [
+          "surface_pole",
+          "switching_gain",
+          "switch",
+          { name: "layer_width", when: (now) => now.switch === "layer" },
+        ],
       },
     ],
   },

@@ -32,7 +32,10 @@ export function inputText(value) {
 
 /** @returns {number} what was typed, NaN if it is not a number; a decimal comma and a true minus are understood */
 export function readNumber(text) {
-  const plain = text.trim().replace(MINUS, "-").replace(/^([^.,]*),([^.,]*)$/, "$1.$2");
+  const plain = text
+    .trim()
+    .replace(MINUS, "-")
+    .replace(/^([^.,]*),([^.,]*)$/, "$1.$2");
   return plain === "" ? NaN : Number(plain);
 }
 

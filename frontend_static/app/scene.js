@@ -41,12 +41,20 @@ export class Scene {
     if (isScene) this.#forwardKeys();
     this.problem.hidden = isScene;
     this.frame.hidden = !isScene;
-    if (!isScene) setText(this.problem, "The 3D scene could not be loaded. Plots and control work without it; it is tried again at the next connection.");
+    if (!isScene)
+      setText(
+        this.problem,
+        "The 3D scene could not be loaded. Plots and control work without it; it is tried again at the next connection.",
+      );
   }
 
   /** Keys pressed in the frame, Esc above all, act on the page, also where the frame does not pass them on itself. */
   #forwardKeys() {
-    this.frame.contentWindow.addEventListener("keydown", (event) => dispatchEvent(new KeyboardEvent("keydown", event)), { capture: true });
+    this.frame.contentWindow.addEventListener(
+      "keydown",
+      (event) => dispatchEvent(new KeyboardEvent("keydown", event)),
+      { capture: true },
+    );
   }
 
   #describe() {

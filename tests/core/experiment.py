@@ -16,7 +16,7 @@ from vssea_core.simulation.kernel import RUNNING, run
 from vssea_core.simulation.state import PLANT, equilibrium_state, inputs_of, rig_numbers
 from vssea_core.simulation.trajectory import Trajectory
 
-NO_TORQUE = Drives(0.0, 0.0, 1e12, 1e12, 0.0, 0.0, 1e12, 0.0, 1e12)
+NO_TORQUE = Drives(0.0, 0.0, 1e12, 0.0, 0.0, 0.0, 1e12, 0.0, 1e12)
 
 
 class Experiment:

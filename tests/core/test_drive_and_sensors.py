@@ -36,7 +36,7 @@ def test_the_motor_never_gets_more_than_every_limit_allows(heat: drive.Heat, tor
     given_torque, limit, bits = drive.limit_motor_torque(DRIVES, heat, torque, speed)
     assert abs(given_torque) <= min(limit, DRIVES.peak_torque)
     if given_torque * speed > 0.0:
-        line = DRIVES.stall_torque * (1.0 - abs(speed) / DRIVES.no_load_speed)
+        line = DRIVES.stall_torque - DRIVES.torque_per_speed * abs(speed)
         assert abs(given_torque) <= max(0.0, line) * (1.0 + 1e-12)
     assert given_torque * torque >= 0.0, "a limit never turns a torque round"
     assert (bits == 0) == (given_torque == torque)

@@ -67,7 +67,7 @@ def simulate(config: Config) -> dict[str, np.ndarray]:
         known = estimator.update(measured, feed, feed_ms)
         deflection = measured.angles[1] - measured.angles[0]
         reference, wanted = link_reference(config.reference, t), stiffness_reference.state
-        decided = link_torque(controller, model, reference, known, wanted[2])
+        decided = link_torque(controller, model, reference, known, wanted[2], feed)
         torque = limited(config.limits, decided["torque"], state[3])
         torque_ms = stiffness_torque(controller, model, wanted, known, deflection)
         peak = config.limits.stiffness_peak_torque

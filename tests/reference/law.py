@@ -34,9 +34,18 @@ def switch(sigma: float, layer: float) -> float:
 
 
 def link_torque(
-    controller: Controller, model: Plant, reference: np.ndarray, known: Knowledge, theta_ms_acceleration: float
+    controller: Controller,
+    model: Plant,
+    reference: np.ndarray,
+    known: Knowledge,
+    theta_ms_acceleration: float,
+    previous_torque: float = 0.0,
 ) -> dict[str, float | np.ndarray]:
-    """Motor torque [N m] with the error state e (4,), sigma, and the snap nu [rad/s^4] it realises."""
+    """Motor torque [N m] with the error state e (4,), sigma, and the snap nu [rad/s^4] it realises.
+
+    `previous_torque` [N m] matters only where the algebraic loop is left unsolved: Pi_2'' = theta_e'' - snap is then
+    computed with it, and the torque follows from theta_e'' = nu + Pi_2''.
+    """
     delta, delta_rate = known.theta_e - known.theta_l, known.omega_e - known.omega_l
     spring = spring_torque(model, delta, known.theta_ms)
     stiffness = spring_stiffness(model, delta, known.theta_ms)
@@ -60,6 +69,11 @@ def link_torque(
         remainder += -3.0 * spring * theta_ms_acceleration / known.theta_ms
     spring_acceleration = j * (snap + known.link[2]) + b * jerk
     motor_acceleration = acceleration + (spring_acceleration - remainder) / stiffness
+    if controller.algebraic_loop == "previous":
+        resisted = spring + model.motor_damping * known.omega_e
+        assumed = (previous_torque - resisted) / model.motor_inertia - known.motor[0]
+        assumed_spring = stiffness * (assumed - acceleration) + remainder
+        motor_acceleration = snap + assumed - (assumed_spring - b * jerk) / j + known.link[2]
     torque = model.motor_inertia * (motor_acceleration + known.motor[0]) + spring + model.motor_damping * known.omega_e
     return {"torque": float(torque), "error": error, "sigma": sigma, "snap": float(snap)}
 

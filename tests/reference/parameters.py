@@ -72,6 +72,7 @@ class Controller:
     stiffness_pole: float = 120.0  # w of the stiffness loop [rad/s]
     stiffness_damping: float = 1.0  # z of the stiffness loop
     stiffness_terms: Literal["all", "rate", "none"] = "all"  # theta_ms terms kept in tau_s' and R
+    algebraic_loop: Literal["solved", "previous"] = "solved"  # previous = the last sample's torque inside Pi_2''
     torque_feed: Literal["applied", "commanded"] = "applied"  # commanded = unlimited, to show wind-up
     difference_filter: float = 0.0  # [rad/s] bandwidth of filtered encoder differences; 0 = velocities are measured
 

@@ -16,8 +16,8 @@ class Drives(NamedTuple):
 
     peak_torque: float
     continuous_torque: float
-    no_load_speed: float
     stall_torque: float
+    torque_per_speed: float  # how fast the driving torque falls with speed: stall torque / no-load speed
     stiffness_peak_torque: float
     stiffness_continuous_torque: float
     stiffness_speed: float
@@ -35,9 +35,9 @@ class Heat(NamedTuple):
 @inlined
 def thermal_limit(peak, continuous, heat):
     """Return the torque [N m] left by I^2 t: the peak, folding back to the continuous torque as `heat` nears its square."""
-    if continuous >= peak:
-        return peak
     full = continuous * continuous
+    if continuous >= peak or heat <= FOLD_BACK * full:
+        return peak
     share = (full - heat) / ((1.0 - FOLD_BACK) * full)
     return continuous + (peak - continuous) * min(1.0, max(0.0, share))
 
@@ -48,7 +48,7 @@ def limit_motor_torque(drives, heat, torque, omega_e):
     available = thermal_limit(drives.peak_torque, drives.continuous_torque, heat.motor)
     bit = PEAK if available == drives.peak_torque else CONTINUOUS
     if torque * omega_e > 0.0:
-        by_speed = max(0.0, drives.stall_torque * (1.0 - abs(omega_e) / drives.no_load_speed))
+        by_speed = max(0.0, drives.stall_torque - drives.torque_per_speed * abs(omega_e))
         if by_speed < available:
             available = by_speed
             bit = SPEED

@@ -125,7 +125,7 @@ def dormand_prince_step(plant, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, h):
 
 @inlined
 def advance_plant(plant, whole_lag, fine_lag, state, tau_e, tau_ms, link_terms, motor_terms, time, sample_time_s):
-    """Return the state one sample period after `time` [s], with the torques [N m] held by the drives.
+    """Return the state one sample period after `time` [s], with the torques [N m] held by the drives, and both loads at `time`.
 
     `whole_lag`, `fine_lag` are the LagShares of a whole period and of one of its substeps, which a sharp friction near
     standstill asks for. The end stops of the stiffness axis are inelastic.
@@ -135,9 +135,12 @@ def advance_plant(plant, whole_lag, fine_lag, state, tau_e, tau_ms, link_terms, 
     whole = plant.coulomb_friction == 0.0 or abs(state.omega_e) > 10.0 * plant.friction_velocity
     steps, lag = (1, whole_lag) if whole else (int(plant.substeps), fine_lag)
     h = sample_time_s / steps
+    load_l = load_e = 0.0
     for step in range(steps):
         loads_l = loads_of_step(link_terms, time, time + step * h, h, whole)
         loads_e = loads_of_step(motor_terms, time, time + step * h, h, whole)
+        if step == 0:
+            load_l, load_e = loads_l[0], loads_e[0]
         y = dormand_prince_step(plant, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, h)
         gap *= lag.left
     theta_l, theta_e, theta_ms, omega_l, omega_e, omega_ms = y
@@ -145,4 +148,4 @@ def advance_plant(plant, whole_lag, fine_lag, state, tau_e, tau_ms, link_terms, 
         theta_ms, omega_ms = plant.theta_ms_stiff, max(omega_ms, 0.0)
     elif theta_ms > plant.theta_ms_soft:
         theta_ms, omega_ms = plant.theta_ms_soft, min(omega_ms, 0.0)
-    return PlantState(theta_l, omega_l, theta_e, omega_e, theta_ms, omega_ms, tau_e + gap)
+    return PlantState(theta_l, omega_l, theta_e, omega_e, theta_ms, omega_ms, tau_e + gap), load_l, load_e

@@ -26,7 +26,7 @@ from vssea_core.simulation.state import APPLIED, MEMORY, PENDING, SLEWED, STATE_
 
 Numbers = NDArray[np.float64]
 
-UNLIMITED = Drives(1e12, 1e12, 1e12, 1e12, 1e12, 1e12, 1e12, 0.0, 1e12)
+UNLIMITED = Drives(1e12, 1e12, 1e12, 0.0, 1e12, 1e12, 1e12, 0.0, 1e36)
 STEP_OF_CHANNEL = (1e-5, 1e-3, 1e-1, 1e1, 1e3, 1e-5)
 STABLE_RADIUS = 1.0 - 1e-9
 

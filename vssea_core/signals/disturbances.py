@@ -40,9 +40,9 @@ def disturbance_rows(terms: Sequence[Disturbance], sample_time_s: float) -> NDAr
 
 
 @inlined
-def active(row, tick_time):
-    """Return whether a term acts over the period that starts at `tick_time` [s]."""
-    return row[4] <= tick_time + TIME_SLACK_S and tick_time + TIME_SLACK_S < row[5]
+def active(rows, i, tick_time):
+    """Return whether term `i` acts over the period that starts at `tick_time` [s]."""
+    return rows[i, 4] <= tick_time + TIME_SLACK_S and tick_time + TIME_SLACK_S < rows[i, 5]
 
 
 @inlined
@@ -50,12 +50,11 @@ def load(rows, tick_time, time):
     """Return the sum [N m] at `time` [s] of the terms that are active in the period starting at `tick_time`."""
     total = 0.0
     for i in range(rows.shape[0]):
-        row = rows[i]
-        if active(row, tick_time):
-            if row[0] == CONSTANT:
-                total += row[1]
+        if active(rows, i, tick_time):
+            if rows[i, 0] == CONSTANT:
+                total += rows[i, 1]
             else:
-                total += row[1] * math.sin(row[2] * time + row[3])
+                total += rows[i, 1] * math.sin(rows[i, 2] * time + rows[i, 3])
     return total
 
 
@@ -67,22 +66,21 @@ def loads_of_step(rows, tick_time, time, h, whole):
     """
     a = b = c = d = e = f = 0.0
     for i in range(rows.shape[0]):
-        row = rows[i]
-        if active(row, tick_time):
-            size = row[1]
-            angle = row[2] * time + row[3]
-            if row[0] == CONSTANT:
+        if active(rows, i, tick_time):
+            size = rows[i, 1]
+            angle = rows[i, 2] * time + rows[i, 3]
+            if rows[i, 0] == CONSTANT:
                 a, b, c, d, e, f = a + size, b + size, c + size, d + size, e + size, f + size
             elif whole:
                 sine, cosine = size * math.sin(angle), size * math.cos(angle)
                 a += sine
-                b += sine * row[6] + cosine * row[11]
-                c += sine * row[7] + cosine * row[12]
-                d += sine * row[8] + cosine * row[13]
-                e += sine * row[9] + cosine * row[14]
-                f += sine * row[10] + cosine * row[15]
+                b += sine * rows[i, 6] + cosine * rows[i, 11]
+                c += sine * rows[i, 7] + cosine * rows[i, 12]
+                d += sine * rows[i, 8] + cosine * rows[i, 13]
+                e += sine * rows[i, 9] + cosine * rows[i, 14]
+                f += sine * rows[i, 10] + cosine * rows[i, 15]
             else:
-                turn = row[2] * h
+                turn = rows[i, 2] * h
                 a += size * math.sin(angle)
                 b += size * math.sin(angle + C2 * turn)
                 c += size * math.sin(angle + C3 * turn)

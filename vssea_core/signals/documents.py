@@ -40,7 +40,7 @@ class SineReference(Part):
         0.25, "frequency", unit="Hz", symbol="f", low=0.0, high=50.0, typical=(0.05, 2.0), step=0.01, scale="linear",
         meaning="Frequency of the sine.",
     )
-    offset: float = _angle(0.0, "offset", "r₀")
+    offset: float = _angle(0.0, "offset", "r₀", "Centre of the sine.")
     fade_in_s: float = _seconds(
         1.0, "fade-in", "Time over which the reference grows from zero, with continuous snap; 0 = none.", high=60.0
     )
@@ -50,8 +50,8 @@ class MoveReference(Part):
     """Rest-to-rest moves from origin to target along the polynomial of 9th order, once or to and fro."""
 
     kind: Literal["move"] = kind("move")
-    origin: float = _angle(0.0, "from", "r_a")
-    target: float = _angle(0.5, "to", "r_b")
+    origin: float = _angle(0.0, "from", "r_a", "Where it starts, and returns to.")
+    target: float = _angle(0.5, "to", "r_b", "Where the move ends.")
     duration_s: float = _duration(1.0)
     dwell_s: float = _seconds(1.0, "dwell", "Rest between two moves.", high=60.0)
     repeat: bool = choice(True, "to and fro", meaning="Moves back after the dwell, and so on.")
@@ -62,8 +62,8 @@ class StepReference(Part):
     """A raw step: r' = ... = r'''' = 0, so the first torque is kappa p^4 per rad."""
 
     kind: Literal["step"] = kind("step")
-    origin: float = _angle(0.0, "from", "r_a")
-    target: float = _angle(0.2, "to", "r_b")
+    origin: float = _angle(0.0, "from", "r_a", "Where it starts, and returns to.")
+    target: float = _angle(0.2, "to", "r_b", "Where the step leads.")
     dwell_s: float = _seconds(2.0, "dwell", "Time between two steps.", low=0.01, high=60.0)
     repeat: bool = choice(True, "to and fro", meaning="Steps back after the dwell, and so on.")
     start_s: float = _seconds(0.5, "start", "Time of the first step, counted from when this reference is set.")
@@ -91,8 +91,8 @@ class MoveStiffness(Part):
     """One rest-to-rest move of the stiffness motor between two stiffnesses."""
 
     kind: Literal["move"] = kind("move")
-    stiffness: float = _stiffness(200.0, "stiffness before", "k_a")
-    target: float = _stiffness(400.0, "stiffness after", "k_b")
+    stiffness: float = _stiffness(200.0, "stiffness before", "k_a", "Stiffness until the move starts.")
+    target: float = _stiffness(400.0, "stiffness after", "k_b", "Stiffness from the end of the move on.")
     start_s: float = _seconds(1.0, "start", "Time at which the move starts, counted from when it is set.")
     duration_s: float = _duration(0.5)
 

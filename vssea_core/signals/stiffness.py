@@ -86,6 +86,17 @@ def commanded(slew, now):
 
 
 @inlined
+def fastest_slew(slew, theta, tau_s):
+    """Return the largest |d theta_ms/dt| [rad/s] at `theta` [rad] under a spring torque `tau_s` [N m]."""
+    k = slew.spring_constant / (2.0 * theta * theta * theta)
+    fastest = min(slew.speed, MAX_STIFFNESS_RATE * theta / (3.0 * k))
+    if tau_s == 0.0:
+        return fastest
+    bearable = slew.torque_reserve * k * theta / (3.0 * slew.motor_inertia * abs(tau_s))
+    return min(fastest, bearable / (FILTER_PEAK * slew.bandwidth))
+
+
+@inlined
 def advance_stiffness(slew, slewed, now, tau_s, sample_time_s):
     """Return the StiffnessTarget at `now` [s] and whether its slew was limited; advance `slewed` (4) by one sample.
 
@@ -94,17 +105,14 @@ def advance_stiffness(slew, slewed, now, tau_s, sample_time_s):
     """
     target = StiffnessTarget(slewed[1], slewed[2], slewed[3])
     w, t = slew.bandwidth, sample_time_s
-    theta = slewed[0]
-    k = slew.spring_constant / (2.0 * theta * theta * theta)
-    fastest = min(slew.speed, MAX_STIFFNESS_RATE * theta / (3.0 * k))
-    if tau_s != 0.0:
-        bearable = slew.torque_reserve * k * theta / (3.0 * slew.motor_inertia * abs(tau_s))
-        fastest = min(fastest, bearable / (FILTER_PEAK * w))
-    gap = commanded(slew, now) - theta
-    limited = abs(gap) > fastest * t * (1.0 + 1e-9)
-    if limited:
-        gap = math.copysign(fastest * t, gap)
-    slewed[0] = theta + gap
+    gap = commanded(slew, now) - slewed[0]
+    limited = False
+    if gap != 0.0:
+        farthest = t * fastest_slew(slew, slewed[0], tau_s)
+        limited = abs(gap) > farthest * (1.0 + 1e-9)
+        if limited:
+            gap = math.copysign(farthest, gap)
+        slewed[0] += gap
 
     shrink = slew.shrink
     y0 = slewed[1] - slewed[0]

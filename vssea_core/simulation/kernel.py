@@ -21,9 +21,9 @@ from vssea_core.actuator.dynamics import PlantState, advance_plant, dry_friction
 from vssea_core.actuator.sensors import measure
 from vssea_core.actuator.spring import leaf
 from vssea_core.compiled import entry, inlined
+from vssea_core.control.law import act
+from vssea_core.control.observer import observe
 from vssea_core.control.packing import MEMORY_SIZE, keep_memory, loaded_memory, loaded_prepared
-from vssea_core.control.step import step
-from vssea_core.signals.disturbances import load
 from vssea_core.signals.references import TRANSITION_SIZE, decay_transition, reference_at, with_transition
 from vssea_core.signals.stiffness import SLEW_SIZE, SLEWED_SIZE, Slew, advance_stiffness
 from vssea_core.simulation.state import APPLIED, HEAT, MEMORY, PENDING, PLANT, SLEWED, TRANSITION, loaded_rig
@@ -72,7 +72,7 @@ def run(
     rig = loaded_rig(rig_row)
     plant, drives = rig.plant, rig.drives
     period = rig.sample_time_s
-    tuning_before, tuning = loaded_prepared(before), loaded_prepared(prepared)
+    tuning = loaded_prepared(prepared)
     slew = Slew(*to_fixed_tuple(slew_row, SLEW_SIZE))
     now = PlantState(*to_fixed_tuple(state[:PLANT], PLANT))
     heat = Heat(state[PLANT], state[PLANT + 1])
@@ -89,14 +89,17 @@ def run(
     for i in range(count):
         time = (first + i) * period
         y = measure(rig.encoders, now)
+        if i == 0:  # the observer of the period that has just ended belongs to the tuning that was in force
+            memory = observe(loaded_prepared(before), memory, y, applied_e, applied_ms)
+        else:
+            memory = observe(tuning, memory, y, applied_e, applied_ms)
         target = reference_at(reference, time)
         if changing:
             target = with_transition(target, transition)
             decay_transition(transition, period)
         known_torque = tuning.law.spring_constant * memory.spring.torque
         stiffness_target, rate_limited = advance_stiffness(slew, slewed, time, known_torque, period)
-        memory, terms = step(tuning_before, tuning, memory, y, applied_e, applied_ms, target, stiffness_target)
-        tuning_before = tuning
+        terms = act(tuning.law, memory, target, stiffness_target)
 
         demanded = terms.motor_torque if enabled else 0.0
         torque, available, bits = limit_motor_torque(drives, heat, demanded, now.omega_e)
@@ -109,6 +112,10 @@ def run(
         else:
             applied_e, applied_ms = torque, stiffness_torque
 
+        heat = warmed(drives, heat, applied_e, applied_ms)
+        following, load_l, load_e = advance_plant(
+            plant, rig.whole_lag, rig.fine_lag, now, applied_e, applied_ms, link_terms, motor_terms, time, period
+        )
         deflection = now.theta_e - now.theta_l
         spring = leaf(deflection, now.theta_ms)
         tau_s = plant.spring_constant * spring.torque
@@ -120,41 +127,36 @@ def run(
             bits |= STIFFNESS_RATE
         if now.theta_ms <= plant.theta_ms_stiff or now.theta_ms >= plant.theta_ms_soft:
             bits |= END_STOP
-        row = rows[i]
-        row[0] = time
-        row[1] = target.r
-        row[2] = now.theta_l
-        row[3] = now.theta_e
-        row[4] = target.r - now.theta_l
-        row[5] = now.omega_l
-        row[6] = now.omega_e
-        row[7] = terms.e2
-        row[8] = terms.e3
-        row[9] = terms.e4
-        row[10] = terms.sigma
-        row[11] = terms.snap
-        row[12] = demanded
-        row[13] = applied_e
-        row[14] = available
-        row[15] = tau_s
-        row[16] = load(link_terms, time, time)
-        row[17] = tuning.law.link_inertia * memory.link.d
-        row[18] = load(motor_terms, time, time) + dry_friction(plant, now.omega_e)
-        row[19] = tuning.law.motor_inertia * memory.motor.d
-        row[20] = tuning.law.link_inertia * memory.link.d1
-        row[21] = k
-        row[22] = slew.spring_constant / (2.0 * stiffness_target.r**3)
-        row[23] = deflection
-        row[24] = now.theta_ms
-        row[25] = now.omega_ms
-        row[26] = applied_ms
-        row[27] = bits
-        row[28] = tuning_id
+        rows[i, 0] = time
+        rows[i, 1] = target.r
+        rows[i, 2] = now.theta_l
+        rows[i, 3] = now.theta_e
+        rows[i, 4] = target.r - now.theta_l
+        rows[i, 5] = now.omega_l
+        rows[i, 6] = now.omega_e
+        rows[i, 7] = terms.e2
+        rows[i, 8] = terms.e3
+        rows[i, 9] = terms.e4
+        rows[i, 10] = terms.sigma
+        rows[i, 11] = terms.snap
+        rows[i, 12] = demanded
+        rows[i, 13] = applied_e
+        rows[i, 14] = available
+        rows[i, 15] = tau_s
+        rows[i, 16] = load_l
+        rows[i, 17] = tuning.law.link_inertia * memory.link.d
+        rows[i, 18] = load_e + dry_friction(plant, now.omega_e)
+        rows[i, 19] = tuning.law.motor_inertia * memory.motor.d
+        rows[i, 20] = tuning.law.link_inertia * memory.link.d1
+        rows[i, 21] = k
+        rows[i, 22] = slew.spring_constant / (2.0 * stiffness_target.r**3)
+        rows[i, 23] = deflection
+        rows[i, 24] = now.theta_ms
+        rows[i, 25] = now.omega_ms
+        rows[i, 26] = applied_ms
+        rows[i, 27] = bits
+        rows[i, 28] = tuning_id
 
-        heat = warmed(drives, heat, applied_e, applied_ms)
-        following = advance_plant(
-            plant, rig.whole_lag, rig.fine_lag, now, applied_e, applied_ms, link_terms, motor_terms, time, period
-        )
         end = health(following)
         if end != RUNNING:
             break

@@ -83,8 +83,8 @@ def drive_numbers(actuator: Actuator, sample_time_s: float) -> Drives:
     return Drives(
         motor.peak_torque,
         motor.continuous_torque,
-        motor.no_load_speed,
         motor.stall_torque,
+        motor.stall_torque / motor.no_load_speed,
         mechanism.peak_torque,
         mechanism.continuous_torque,
         mechanism.speed_limit,

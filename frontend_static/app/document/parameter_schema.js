@@ -54,6 +54,6 @@ export class Field {
     this.isLogarithmic = schema.scale === "log" && this.typical[0] > 0;
     this.step = schema.step ?? (this.typical[1] - this.typical[0]) / 100;
     this.isWhole = schema.type === "integer";
-    this.choices = schema.type === "boolean" ? [true, false] : schema.enum ?? null;
+    this.choices = schema.type === "boolean" ? [true, false] : (schema.enum ?? null);
   }
 }

@@ -60,12 +60,16 @@ export class DisturbancePanel {
     if (!field) return null;
     const isAmount = name !== "frequency_hz";
     const inList = (terms) => terms?.find((term) => term.kind === kind)?.[name] ?? (isAmount ? 0 : field.default);
-    return new NumberRow(field, {
-      path: `disturbances.${side}.${kind}.${name}`,
-      read: () => inList(document.value(`disturbances.${side}`)),
-      baseline: () => baseline.value(`disturbances.${side}`) && inList(baseline.value(`disturbances.${side}`)),
-      write: (value, gesture) => edits.replace("disturbances", this.#with(side, kind, name, value), gesture),
-    }, hint);
+    return new NumberRow(
+      field,
+      {
+        path: `disturbances.${side}.${kind}.${name}`,
+        read: () => inList(document.value(`disturbances.${side}`)),
+        baseline: () => baseline.value(`disturbances.${side}`) && inList(baseline.value(`disturbances.${side}`)),
+        write: (value, gesture) => edits.replace("disturbances", this.#with(side, kind, name, value), gesture),
+      },
+      hint,
+    );
   }
 
   /** The document's disturbances with one value changed; a term that does not exist yet acts at once and for ever. */
@@ -73,7 +77,12 @@ export class DisturbancePanel {
     const all = structuredClone(this.desk.document.value("disturbances"));
     let term = all[side].find((each) => each.kind === kind);
     if (!term) {
-      term = { kind, start_s: 0, end_s: null, ...(kind === "sine" ? { amplitude: 0, frequency_hz: this.#default("frequency_hz"), phase: 0 } : {}) };
+      term = {
+        kind,
+        start_s: 0,
+        end_s: null,
+        ...(kind === "sine" ? { amplitude: 0, frequency_hz: this.#default("frequency_hz"), phase: 0 } : {}),
+      };
       all[side].push(term);
     }
     if (term.end_s !== null && term.end_s <= (this.desk.session.snapshot?.time_s ?? 0)) term.end_s = null;

@@ -54,7 +54,10 @@ function paragraph(line) {
 export function describeField(field, baselineText) {
   const unit = field.unit ? ` ${field.unit}` : "";
   const source = field.basis ? `, ${field.basis}` : "";
-  const range = Number.isFinite(field.low) && Number.isFinite(field.high) ? `Permitted ${inputText(field.low)} to ${inputText(field.high)}${unit}` : "";
+  const range =
+    Number.isFinite(field.low) && Number.isFinite(field.high)
+      ? `Permitted ${inputText(field.low)} to ${inputText(field.high)}${unit}`
+      : "";
   const normal = typeof field.default === "number" ? inputText(field.default) + unit : String(field.default ?? "");
   return [
     { text: field.title, symbol: field.symbol, class: "hint-title" },

@@ -16,9 +16,29 @@ export class NumberRow extends ParameterRow {
 
   constructor(field, place, hint) {
     const label = `${field.title}${field.unit ? `, ${field.unit}` : ""}`;
-    const slider = element("input", { type: "range", min: 0, max: SliderScale.positions, step: 1, "aria-label": label });
-    const box = element("input", { type: "text", inputmode: "decimal", autocomplete: "off", spellcheck: "false", "aria-label": label });
-    super(field, place, hint, [slider, box, element("span", { class: field.unit.length > LONG_UNIT ? "row-unit is-long" : "row-unit", title: field.unit }, field.unit)]);
+    const slider = element("input", {
+      type: "range",
+      min: 0,
+      max: SliderScale.positions,
+      step: 1,
+      "aria-label": label,
+    });
+    const box = element("input", {
+      type: "text",
+      inputmode: "decimal",
+      autocomplete: "off",
+      spellcheck: "false",
+      "aria-label": label,
+    });
+    super(field, place, hint, [
+      slider,
+      box,
+      element(
+        "span",
+        { class: field.unit.length > LONG_UNIT ? "row-unit is-long" : "row-unit", title: field.unit },
+        field.unit,
+      ),
+    ]);
     this.slider = slider;
     this.box = box;
     this.scale = new SliderScale(field);
@@ -32,7 +52,9 @@ export class NumberRow extends ParameterRow {
   }
 
   words(value) {
-    return typeof value === "number" ? `${inputText(value)}${this.field.unit ? ` ${this.field.unit}` : ""}` : String(value);
+    return typeof value === "number"
+      ? `${inputText(value)}${this.field.unit ? ` ${this.field.unit}` : ""}`
+      : String(value);
   }
 
   show(value) {

@@ -14,7 +14,11 @@ export class ParameterList {
     this.session = desk.session;
     const complete = { ...desk, document: desk.session.document, hint: new FieldHint() };
     this.panels = PANELS.map((layout) => new (SPECIAL[layout.is] ?? PartPanel)(layout, complete));
-    this.fieldset = element("fieldset", { class: "parameter-list", disabled: true }, element("legend", { class: "unseen" }, "Parameters"));
+    this.fieldset = element(
+      "fieldset",
+      { class: "parameter-list", disabled: true },
+      element("legend", { class: "unseen" }, "Parameters"),
+    );
     this.fieldset.append(...this.panels.map((panel) => panel.root));
     root.replaceChildren(this.fieldset);
     complete.document.addEventListener("change", ({ detail }) => this.#echo(detail));

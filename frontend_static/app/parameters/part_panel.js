@@ -50,7 +50,11 @@ export class PartPanel {
   #sayOther(now, offered) {
     const isOther = Boolean(this.layout.kinds) && !offered;
     this.other.hidden = !isOther;
-    if (isOther) setText(this.other, `The scenario asks for “${now.kind}”. Setting a value here makes it “${this.layout.kinds[0].label.toLowerCase()}”.`);
+    if (isOther)
+      setText(
+        this.other,
+        `The scenario asks for “${now.kind}”. Setting a value here makes it “${this.layout.kinds[0].label.toLowerCase()}”.`,
+      );
   }
 
   #row({ name, short }, kind) {
@@ -74,7 +78,11 @@ export class PartPanel {
       baseline: () => (kind && baseline.value(`${this.layout.part}.kind`) !== kind ? undefined : baseline.value(path)),
       write: (value, gesture) => {
         const switches = kind && document.value(`${this.layout.part}.kind`) !== kind;
-        return edits.change(this.section, switches ? { [kindPath]: kind, [relative]: value } : { [relative]: value }, gesture);
+        return edits.change(
+          this.section,
+          switches ? { [kindPath]: kind, [relative]: value } : { [relative]: value },
+          gesture,
+        );
       },
     };
   }
@@ -87,7 +95,9 @@ export class PartPanel {
     }));
     const path = [...this.inner, "kind"].join(".");
     const choice = new Segmented(this.layout.title, options, (kind) =>
-      this.desk.edits.change(this.section, { [path]: kind }).catch((refusal) => this.desk.session.note(refusal.message)),
+      this.desk.edits
+        .change(this.section, { [path]: kind })
+        .catch((refusal) => this.desk.session.note(refusal.message)),
     );
     choice.root.dataset.path = `${this.layout.part}.kind`;
     return choice;

@@ -9,15 +9,31 @@ export class PresetPanel {
 
   constructor(layout, desk) {
     this.desk = desk;
-    this.name = element("input", { type: "text", "aria-label": "Preset name", placeholder: "name of this tuning", maxlength: 80, autocomplete: "off", spellcheck: "false" });
+    this.name = element("input", {
+      type: "text",
+      "aria-label": "Preset name",
+      placeholder: "name of this tuning",
+      maxlength: 80,
+      autocomplete: "off",
+      spellcheck: "false",
+    });
     this.name.addEventListener("keydown", (event) => event.key === "Enter" && this.save());
-    this.saveButton = element("button", { type: "button", title: "Save the tuning in force under this name (Ctrl+S)", click: () => this.save() }, "Save");
+    this.saveButton = element(
+      "button",
+      { type: "button", title: "Save the tuning in force under this name (Ctrl+S)", click: () => this.save() },
+      "Save",
+    );
     this.select = element("select", { "aria-label": "Saved presets" });
     this.applyButton = element("button", { type: "button", click: () => this.#apply() }, "Apply");
     this.deleteButton = element("button", { type: "button", class: "quiet", click: () => this.#delete() }, "Delete");
     this.changes = element("p", { class: "preset-changes", hidden: true });
     this.saved = element("div", { class: "line", hidden: true }, this.select, this.applyButton, this.deleteButton);
-    this.root = new LinePanel(layout, element("div", { class: "line" }, this.name, this.saveButton), this.saved, this.changes).root;
+    this.root = new LinePanel(
+      layout,
+      element("div", { class: "line" }, this.name, this.saveButton),
+      this.saved,
+      this.changes,
+    ).root;
     desk.session.addEventListener("hello", () => this.#fetch());
     desk.session.addEventListener("presets", () => this.#fetch());
     this.#fetch();
@@ -80,7 +96,9 @@ export class PresetPanel {
     this.changes.hidden = changes.length === 0;
     if (!changes.length) return;
     const count = `${changes.length} field${changes.length === 1 ? "" : "s"} changed since ${baseline.name}`;
-    const which = changes.map((change) => `${this.#title(change.path)} ${this.#words(change.from)} → ${this.#words(change.to)}`);
+    const which = changes.map(
+      (change) => `${this.#title(change.path)} ${this.#words(change.from)} → ${this.#words(change.to)}`,
+    );
     setText(this.changes, count);
     this.changes.title = which.join("\n");
     this.changes.append(element("span", { class: "preset-which" }, which.join(", ")));

@@ -9,7 +9,16 @@ export class ScenarioPanel {
   constructor(layout, desk) {
     this.desk = desk;
     this.select = element("select", { "aria-label": "Scenario", change: () => this.#load() });
-    const again = element("button", { type: "button", class: "quiet", title: "Load this scenario again, as it was written", click: () => this.#load() }, "Reload");
+    const again = element(
+      "button",
+      {
+        type: "button",
+        class: "quiet",
+        title: "Load this scenario again, as it was written",
+        click: () => this.#load(),
+      },
+      "Reload",
+    );
     this.root = new LinePanel(layout, element("div", { class: "line" }, this.select, again)).root;
     desk.session.addEventListener("hello", () => this.#fetch());
     this.#fetch();

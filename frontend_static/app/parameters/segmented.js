@@ -13,7 +13,11 @@ export class Segmented {
     this.shown = undefined;
     this.options = options.map(({ value, text, title }) => ({
       value,
-      button: element("button", { type: "button", role: "radio", "data-value": String(value), title, click: () => this.#ask(value, choose) }, text),
+      button: element(
+        "button",
+        { type: "button", role: "radio", "data-value": String(value), title, click: () => this.#ask(value, choose) },
+        text,
+      ),
     }));
     this.root = element(
       "div",

@@ -15,7 +15,9 @@ export class SliderScale {
   /** @returns {number} 0 to 1000; a value beyond the slider's range stays at its end */
   position(value) {
     const { low, high } = this;
-    const share = this.field.isLogarithmic ? Math.log(Math.max(value, low) / low) / Math.log(high / low) : (value - low) / (high - low);
+    const share = this.field.isLogarithmic
+      ? Math.log(Math.max(value, low) / low) / Math.log(high / low)
+      : (value - low) / (high - low);
     return Math.round(POSITIONS * Math.min(1, Math.max(0, share)));
   }
 

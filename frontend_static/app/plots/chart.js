@@ -25,12 +25,24 @@ export class Chart {
     this.stack = stack;
     this.hasTimeAxis = hasTimeAxis;
     this.isTop = isTop;
-    this.ranges = { left: new YRange(layout.left.smallest), right: layout.right ? new YRange(layout.right.smallest) : null };
-    this.series = layout.series.map((series) => ({ side: "left", label: stack.session.channels.get(series.channel)?.label ?? series.channel, ...series }));
+    this.ranges = {
+      left: new YRange(layout.left.smallest),
+      right: layout.right ? new YRange(layout.right.smallest) : null,
+    };
+    this.series = layout.series.map((series) => ({
+      side: "left",
+      label: stack.session.channels.get(series.channel)?.label ?? series.channel,
+      ...series,
+    }));
     this.envelopes = new Map(channelsOf([layout]).map((channel) => [channel, new Envelope()]));
     this.legend = this.#makeLegend();
     this.canvasArea = element("div", { class: "chart-area" });
-    this.root = element("section", { class: "chart", id: `chart-${layout.id}`, "aria-label": layout.name }, this.legend.root, this.canvasArea);
+    this.root = element(
+      "section",
+      { class: "chart", id: `chart-${layout.id}`, "aria-label": layout.name },
+      this.legend.root,
+      this.canvasArea,
+    );
   }
 
   /** Width of the plot itself, in device pixels. */
@@ -40,7 +52,11 @@ export class Chart {
 
   /** Make the uPlot, once the area has a size. */
   build(width, height) {
-    this.plot = new uPlot(this.#options(width, height), this.#data({ time: new Float64Array(0), column: () => new Float32Array(0) }, 0, 0), this.canvasArea);
+    this.plot = new uPlot(
+      this.#options(width, height),
+      this.#data({ time: new Float64Array(0), column: () => new Float32Array(0) }, 0, 0),
+      this.canvasArea,
+    );
     this.plot.root.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
     this.plot.over.addEventListener("click", (event) => this.#click(event));
     this.plot.over.addEventListener("pointerdown", (event) => (this.pressedAt = event.clientX));
@@ -63,10 +79,15 @@ export class Chart {
   tell(picture, at) {
     const { cursors } = this.stack;
     for (const { item, series } of this.told) {
-      item.show(at < 0 ? NaN : picture.column(series.channel)[at], this.ranges[series.side], cursors.difference(series.channel));
+      item.show(
+        at < 0 ? NaN : picture.column(series.channel)[at],
+        this.ranges[series.side],
+        cursors.difference(series.channel),
+      );
       if (series.onlyWhenUnlike) item.root.hidden = !this.#unlike.has(series.channel);
     }
-    if (this.limitItem) this.limitItem.show(at < 0 ? NaN : picture.column(this.layout.limit.channel)[at], { min: 0, max: 100 }, NaN);
+    if (this.limitItem)
+      this.limitItem.show(at < 0 ? NaN : picture.column(this.layout.limit.channel)[at], { min: 0, max: 100 }, NaN);
     this.legend.scaleReset.hidden = !this.ranges.left.isManual && !this.ranges.right?.isManual;
   }
 
@@ -92,7 +113,14 @@ export class Chart {
         stack.redraw();
       },
     }));
-    if (layout.limit) entries.push({ label: layout.limit.label, colour: "limit-line", unit: layout.left.unit, factor: layout.left.factor ?? 1, isStatic: true });
+    if (layout.limit)
+      entries.push({
+        label: layout.limit.label,
+        colour: "limit-line",
+        unit: layout.left.unit,
+        factor: layout.left.factor ?? 1,
+        isStatic: true,
+      });
     const legend = new Legend(entries);
     this.told = inOrder.map((series, i) => ({ series, item: legend.items[i] }));
     this.limitItem = layout.limit ? legend.items.at(-1) : null;
@@ -104,7 +132,10 @@ export class Chart {
   }
 
   #data(picture, from, to) {
-    const channels = [...this.series.map(({ channel }) => channel), ...(this.layout.limit ? Array(2).fill(this.layout.limit.channel) : [])];
+    const channels = [
+      ...this.series.map(({ channel }) => channel),
+      ...(this.layout.limit ? Array(2).fill(this.layout.limit.channel) : []),
+    ];
     return [picture.time.subarray(from, to), ...channels.map((name) => picture.column(name).subarray(from, to))];
   }
 
@@ -112,7 +143,9 @@ export class Chart {
     for (const [channel, envelope] of this.envelopes) envelope.measure(picture.column(channel), span);
     for (const [side, range] of Object.entries(this.ranges)) {
       if (!range) continue;
-      const shown = this.series.filter((series) => series.side === side && !series.isHidden).map(({ channel }) => this.envelopes.get(channel));
+      const shown = this.series
+        .filter((series) => series.side === side && !series.isHidden)
+        .map(({ channel }) => this.envelopes.get(channel));
       let low = Math.min(...shown.map(({ min }) => min));
       let high = Math.max(...shown.map(({ max }) => max));
       if (this.layout.limit && side === "left") [low, high] = this.#withLimit(low, high);
@@ -160,9 +193,17 @@ export class Chart {
       height,
       legend: { show: false },
       padding: [6, this.layout.right ? 0 : RIGHT_PX, this.hasTimeAxis ? 0 : 5, 0],
-      scales: { x: { time: false, range: (_, min, max) => [min, max] }, left: range("left"), ...(this.ranges.right ? { right: range("right") } : {}) },
+      scales: {
+        x: { time: false, range: (_, min, max) => [min, max] },
+        left: range("left"),
+        ...(this.ranges.right ? { right: range("right") } : {}),
+      },
       axes: this.#axes(),
-      series: [{}, ...this.series.map((series) => this.#line(series)), ...(this.layout.limit ? [this.#limitLine(1), this.#limitLine(-1)] : [])],
+      series: [
+        {},
+        ...this.series.map((series) => this.#line(series)),
+        ...(this.layout.limit ? [this.#limitLine(1), this.#limitLine(-1)] : []),
+      ],
       cursor: {
         y: false,
         points: { size: 6, width: 0, fill: (_, index) => this.#pointColour(index) },
@@ -200,7 +241,10 @@ export class Chart {
       width: width ?? (isFaint ? 1 : 1.5),
       stroke: () => (isFaint ? palette.faint(`series-${colour}`, 0.45) : palette.colour(`series-${colour}`)),
       dash,
-      paths: linePath({ envelope: this.envelopes.get(channel), isShown: onlyWhenUnlike ? () => this.#unlike.has(channel) : undefined }),
+      paths: linePath({
+        envelope: this.envelopes.get(channel),
+        isShown: onlyWhenUnlike ? () => this.#unlike.has(channel) : undefined,
+      }),
       points: { show: false },
     };
   }
@@ -217,7 +261,11 @@ export class Chart {
       width: 1,
       stroke: () => this.stack.palette.colour("limit-line"),
       dash: [2, 3],
-      paths: linePath({ envelope: this.envelopes.get(this.layout.limit.channel), sign, isShown: () => this.#limitIsNear }),
+      paths: linePath({
+        envelope: this.envelopes.get(this.layout.limit.channel),
+        sign,
+        isShown: () => this.#limitIsNear,
+      }),
       points: { show: false },
     };
   }
@@ -234,10 +282,15 @@ export class Chart {
     const time = {
       ...base,
       size: this.hasTimeAxis ? TIME_AXIS_PX : 0,
-      splits: (plot, _, min, max) => niceTicks(min, max, Math.max(2, Math.min(8, plot.bbox.width / devicePixelRatio / 90))),
+      splits: (plot, _, min, max) =>
+        niceTicks(min, max, Math.max(2, Math.min(8, plot.bbox.width / devicePixelRatio / 90))),
       values: (_, ticks) => (this.hasTimeAxis ? tickTexts(ticks).map((text) => `${text} s`) : ticks.map(() => "")),
     };
-    return [time, this.#yAxis(base, "left", 3, LEFT_PX), ...(this.ranges.right ? [this.#yAxis(base, "right", 1, RIGHT_PX)] : [])];
+    return [
+      time,
+      this.#yAxis(base, "left", 3, LEFT_PX),
+      ...(this.ranges.right ? [this.#yAxis(base, "right", 1, RIGHT_PX)] : []),
+    ];
   }
 
   #yAxis(base, side, uplotSide, size) {
@@ -247,7 +300,8 @@ export class Chart {
       side: uplotSide,
       size,
       grid: { ...base.grid, show: side === "left" },
-      splits: (plot, _, min, max) => niceTicks(min, max, Math.max(2, Math.floor(plot.bbox.height / devicePixelRatio / TICK_EVERY_PX))),
+      splits: (plot, _, min, max) =>
+        niceTicks(min, max, Math.max(2, Math.floor(plot.bbox.height / devicePixelRatio / TICK_EVERY_PX))),
       values: (_, ticks) => tickTexts(ticks, this.layout[side].factor),
     };
   }

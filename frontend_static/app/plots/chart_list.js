@@ -25,7 +25,13 @@ export const CHARTS = [
     name: "Motor torque",
     left: { unit: "N·m", smallest: 2 },
     series: [
-      { channel: "motor_torque_demand", label: "demanded", colour: "torque", isFaint: true, onlyWhenUnlike: "motor_torque" },
+      {
+        channel: "motor_torque_demand",
+        label: "demanded",
+        colour: "torque",
+        isFaint: true,
+        onlyWhenUnlike: "motor_torque",
+      },
       { channel: "motor_torque", colour: "torque", isFirstInLegend: true },
     ],
     limit: { channel: "motor_torque_limit", of: "motor_torque", label: "limit ±", near: 0.6 },
@@ -56,6 +62,9 @@ export const CHARTS = [
 
 /** @returns {string[]} every channel that a chart needs */
 export function channelsOf(charts) {
-  const names = charts.flatMap(({ series, limit }) => [...series.map(({ channel }) => channel), ...(limit ? [limit.channel] : [])]);
+  const names = charts.flatMap(({ series, limit }) => [
+    ...series.map(({ channel }) => channel),
+    ...(limit ? [limit.channel] : []),
+  ]);
   return [...new Set(names)];
 }

@@ -35,7 +35,8 @@ export class Envelope {
     this.max = -Infinity;
     if (!columns) return this.#scan(first, last);
     const count = columns.length - 1;
-    if (this.low?.length !== count) [this.low, this.high, this.isBroken] = [new Float32Array(count), new Float32Array(count), new Uint8Array(count)];
+    if (this.low?.length !== count)
+      [this.low, this.high, this.isBroken] = [new Float32Array(count), new Float32Array(count), new Uint8Array(count)];
     for (let column = 0; column < count; column += 1) this.#scanColumn(column, columns[column], columns[column + 1]);
     return this;
   }

@@ -1,7 +1,15 @@
 import { element } from "../element.js";
 import { fixed } from "../quantity.js";
 
-const KINDS = { disturbance: "series-disturbance", tuning: "dim", stiffness: "series-stiffness", reference: "dim", limit: "warning", fault: "fault", state: "dim" };
+const KINDS = {
+  disturbance: "series-disturbance",
+  tuning: "dim",
+  stiffness: "series-stiffness",
+  reference: "dim",
+  limit: "warning",
+  fault: "fault",
+  state: "dim",
+};
 const MARKS_KEPT = 500;
 const REACH_PX = 5;
 const APART_PX = 8; // a dragged slider leaves many marks of one kind
@@ -21,7 +29,13 @@ export class EventMarks {
     this.epoch = newest;
     const marks = events
       .filter((event) => KINDS[event.kind] && event.time_s !== null)
-      .map((event) => ({ time: event.time_s, text: event.text, epoch: event.epoch, colour: KINDS[event.kind], by: event.by === session.you ? "you" : event.by }));
+      .map((event) => ({
+        time: event.time_s,
+        text: event.text,
+        epoch: event.epoch,
+        colour: KINDS[event.kind],
+        by: event.by === session.you ? "you" : event.by,
+      }));
     this.list = [...this.list, ...marks].filter((mark) => mark.epoch === newest).slice(-MARKS_KEPT);
   }
 
@@ -41,7 +55,8 @@ export class EventMarks {
     ctx.setLineDash([3 * devicePixelRatio, 3 * devicePixelRatio]);
     for (const mark of marks) {
       const x = Math.round(plot.valToPos(mark.time, "x", true)) + 0.5;
-      if (mark.time < from || mark.time > to || x - (drawn.get(mark.colour) ?? -Infinity) < APART_PX * devicePixelRatio) continue;
+      if (mark.time < from || mark.time > to || x - (drawn.get(mark.colour) ?? -Infinity) < APART_PX * devicePixelRatio)
+        continue;
       drawn.set(mark.colour, x);
       ctx.strokeStyle = palette.faint(mark.colour, 0.6);
       ctx.beginPath();
@@ -57,7 +72,9 @@ export class EventMarks {
     const near = left < 0 ? [] : marks.filter((mark) => Math.abs(plot.valToPos(mark.time, "x") - left) <= REACH_PX);
     this.tip.hidden = near.length === 0;
     if (!near.length) return;
-    const shown = near.slice(-4).map((mark) => element("p", {}, `${mark.text} · ${fixed(mark.time, 2)} s${mark.by ? ` · ${mark.by}` : ""}`));
+    const shown = near
+      .slice(-4)
+      .map((mark) => element("p", {}, `${mark.text} · ${fixed(mark.time, 2)} s${mark.by ? ` · ${mark.by}` : ""}`));
     this.tip.replaceChildren(...shown);
     const area = plot.over.getBoundingClientRect();
     const width = this.tip.offsetWidth;

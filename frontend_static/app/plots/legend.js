@@ -9,7 +9,11 @@ export class Legend {
   /** @param {object[]} entries {label, unit, factor, colour, isDashed, isHidden, toggle(isHidden)} */
   constructor(entries) {
     this.items = entries.map((entry) => new LegendItem(entry));
-    this.scaleReset = element("button", { type: "button", class: "legend-reset", hidden: true, title: "Back to automatic scaling" }, "y by hand ↺");
+    this.scaleReset = element(
+      "button",
+      { type: "button", class: "legend-reset", hidden: true, title: "Back to automatic scaling" },
+      "y by hand ↺",
+    );
     this.root = element("div", { class: "legend" }, ...this.items.map((item) => item.root), this.scaleReset);
   }
 }
@@ -24,7 +28,12 @@ class LegendItem {
     swatch.style.setProperty("--colour", `var(--${entry.colour})`);
     this.root = element(
       "button",
-      { type: "button", class: "legend-item", title: `Show or hide ${entry.title ?? entry.label}`, click: () => this.#toggle() },
+      {
+        type: "button",
+        class: "legend-item",
+        title: `Show or hide ${entry.title ?? entry.label}`,
+        click: () => this.#toggle(),
+      },
       swatch,
       this.label,
       this.value,

@@ -10,7 +10,13 @@ export function linePath({ envelope, sign = 1, isShown = () => true }) {
     const { left, top, width, height } = plot.bbox;
     const { x, [plot.series[index].scale]: y } = plot.scales;
     const perUnit = height / (y.max - y.min);
-    const place = { left, from: x.min, perSecond: width / (x.max - x.min), zero: top + height + perUnit * y.min, perUnit: sign * perUnit };
+    const place = {
+      left,
+      from: x.min,
+      perSecond: width / (x.max - x.min),
+      zero: top + height + perUnit * y.min,
+      perUnit: sign * perUnit,
+    };
     const stroke = new Path2D();
     if (envelope.columns) traceColumns(stroke, envelope, place);
     else traceSamples(stroke, plot.data[0], plot.data[index], first, last, place);

@@ -47,7 +47,10 @@ export class MeasuringCursors extends EventTarget {
   }
 
   draw(plot, palette, isTop) {
-    for (const [letter, point] of [["A", this.a], ["B", this.b]]) {
+    for (const [letter, point] of [
+      ["A", this.a],
+      ["B", this.b],
+    ]) {
       if (!point || point.time < plot.scales.x.min || point.time > plot.scales.x.max) continue;
       const { ctx, bbox } = plot;
       const x = Math.round(plot.valToPos(point.time, "x", true)) + 0.5;
@@ -73,7 +76,10 @@ export class MeasuringCursors extends EventTarget {
     if (!times.length) return null;
     const after = Math.min(firstAtOrAfter(times, time), times.length - 1);
     const nearest = after > 0 && time - times[after - 1] < times[after] - time ? after - 1 : after;
-    return { time: times[nearest], values: new Map(this.channels.map((name) => [name, picture.column(name)[nearest]])) };
+    return {
+      time: times[nearest],
+      values: new Map(this.channels.map((name) => [name, picture.column(name)[nearest]])),
+    };
   }
 
   #changed() {

@@ -15,7 +15,8 @@ export function niceTicks(low, high, count) {
 
 function multiples(low, high, step) {
   const ticks = [];
-  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1) ticks.push(Number((i * step).toPrecision(12)));
+  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1)
+    ticks.push(Number((i * step).toPrecision(12)));
   return ticks;
 }
 

@@ -63,7 +63,9 @@ export class PlotStack {
   }
 
   #build() {
-    this.#charts = CHARTS.map((layout, i) => new Chart(layout, this, { isTop: i === 0, hasTimeAxis: i === CHARTS.length - 1 }));
+    this.#charts = CHARTS.map(
+      (layout, i) => new Chart(layout, this, { isTop: i === 0, hasTimeAxis: i === CHARTS.length - 1 }),
+    );
     this.area.replaceChildren(...this.#charts.map((chart) => chart.root));
     for (const [i, [width, height]] of this.#sizes().entries()) this.#charts[i].build(width, height);
     new ResizeObserver(() => this.#resize()).observe(this.area);
@@ -71,7 +73,10 @@ export class PlotStack {
 
   #sizes() {
     const { clientWidth, clientHeight } = this.area;
-    const each = Math.max(LEAST_CHART_PX, Math.floor((clientHeight - TIME_AXIS_PX - this.#charts.length * (LEGEND_PX + 1)) / this.#charts.length));
+    const each = Math.max(
+      LEAST_CHART_PX,
+      Math.floor((clientHeight - TIME_AXIS_PX - this.#charts.length * (LEGEND_PX + 1)) / this.#charts.length),
+    );
     return this.#charts.map((chart) => [clientWidth, each + (chart.hasTimeAxis ? TIME_AXIS_PX : 0)]);
   }
 

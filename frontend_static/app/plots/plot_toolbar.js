@@ -8,12 +8,23 @@ export class PlotToolbar {
     this.timeWindow = stack.timeWindow;
     this.cursors = stack.cursors;
     this.stack = stack;
-    this.select = element("select", { "aria-label": "Time window", change: () => this.timeWindow.choose(Number(this.select.value)) });
+    this.select = element("select", {
+      "aria-label": "Time window",
+      change: () => this.timeWindow.choose(Number(this.select.value)),
+    });
     this.select.append(...TimeWindow.choices.map((seconds) => new Option(`${seconds} s`, seconds)));
     this.select.value = this.timeWindow.seconds;
-    this.freezeButton = this.#button("Freeze", "F", "Stop the picture; the recording goes on", () => this.toggleFreeze());
-    this.cursorsButton = this.#button("Cursors", "C", "Measure: click sets A, the next click B", () => this.cursors.toggle());
-    this.followButton = element("button", { type: "button", class: "follow", hidden: true, click: () => stack.followAgain() }, "Follow");
+    this.freezeButton = this.#button("Freeze", "F", "Stop the picture; the recording goes on", () =>
+      this.toggleFreeze(),
+    );
+    this.cursorsButton = this.#button("Cursors", "C", "Measure: click sets A, the next click B", () =>
+      this.cursors.toggle(),
+    );
+    this.followButton = element(
+      "button",
+      { type: "button", class: "follow", hidden: true, click: () => stack.followAgain() },
+      "Follow",
+    );
     this.readout = element("output", { class: "readout" });
     root.append(
       element("label", { class: "tool" }, "window ", this.select),
@@ -32,7 +43,12 @@ export class PlotToolbar {
   }
 
   #button(text, key, title, click) {
-    return element("button", { type: "button", class: "tool", title, "aria-pressed": "false", click }, text, element("kbd", {}, key));
+    return element(
+      "button",
+      { type: "button", class: "tool", title, "aria-pressed": "false", click },
+      text,
+      element("kbd", {}, key),
+    );
   }
 
   #show() {

@@ -36,7 +36,8 @@ export class LiveConnection extends EventTarget {
     this.#watchSilence();
     this.dispatchEvent(new Event("retrying"));
     socket.onmessage = ({ data }) => socket === this.#socket && this.#receive(data);
-    socket.onclose = ({ reason }) => socket === this.#socket && this.#lose(reason || "The server closed the connection.");
+    socket.onclose = ({ reason }) =>
+      socket === this.#socket && this.#lose(reason || "The server closed the connection.");
   }
 
   /** Send a command. @returns {Promise<object>} its result @throws {Refusal} */
@@ -46,7 +47,9 @@ export class LiveConnection extends EventTarget {
     return new Promise((resolve, reject) => {
       const limit = setTimeout(() => {
         this.#pending.delete(id);
-        reject(new Refusal({ title: "No answer", detail: `No answer to “${name}” within ${COMMAND_LIMIT_MS / 1000} s.` }));
+        reject(
+          new Refusal({ title: "No answer", detail: `No answer to “${name}” within ${COMMAND_LIMIT_MS / 1000} s.` }),
+        );
       }, COMMAND_LIMIT_MS);
       this.#pending.set(id, { resolve, reject, limit });
       this.#socket.send(JSON.stringify({ id, command: name, arguments: args }));
@@ -77,7 +80,10 @@ export class LiveConnection extends EventTarget {
 
   #watchSilence() {
     clearTimeout(this.#silence);
-    this.#silence = setTimeout(() => this.#lose(`Nothing heard from the server for ${SILENCE_LIMIT_MS / 1000} s.`), SILENCE_LIMIT_MS);
+    this.#silence = setTimeout(
+      () => this.#lose(`Nothing heard from the server for ${SILENCE_LIMIT_MS / 1000} s.`),
+      SILENCE_LIMIT_MS,
+    );
   }
 
   #lose(why) {

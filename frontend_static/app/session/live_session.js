@@ -27,7 +27,9 @@ export class LiveSession extends EventTarget {
     this.connection.addEventListener("message", ({ detail }) => this.#take(detail));
     this.connection.addEventListener("frame", ({ detail }) => this.store.accept(new TelemetryFrame(detail)));
     this.connection.addEventListener("lost", ({ detail }) => this.#connectionIs(detail));
-    this.connection.addEventListener("retrying", () => this.#connectionIs(this.loss && { ...this.loss, retryAt: null }));
+    this.connection.addEventListener("retrying", () =>
+      this.#connectionIs(this.loss && { ...this.loss, retryAt: null }),
+    );
     this.connection.addEventListener("open", () => this.#connectionIs(null));
   }
 
@@ -45,7 +47,18 @@ export class LiveSession extends EventTarget {
 
   /** Add a line to the log that only this page knows of, such as a refused command. */
   note(text, severity = "warning") {
-    this.#log([{ number: null, wall_time: new Date().toISOString(), epoch: null, time_s: null, kind: "page", text, by: this.you, severity }]);
+    this.#log([
+      {
+        number: null,
+        wall_time: new Date().toISOString(),
+        epoch: null,
+        time_s: null,
+        kind: "page",
+        text,
+        by: this.you,
+        severity,
+      },
+    ]);
   }
 
   #connectionIs(loss) {

@@ -13,10 +13,12 @@ export async function rest(method, path, body) {
       signal: AbortSignal.timeout(TIME_LIMIT_MS),
     });
   } catch (error) {
-    const why = error.name === "TimeoutError" ? `no answer within ${TIME_LIMIT_MS / 1000} s` : "the server cannot be reached";
+    const why =
+      error.name === "TimeoutError" ? `no answer within ${TIME_LIMIT_MS / 1000} s` : "the server cannot be reached";
     throw new Refusal({ title: "No answer", detail: `${method} ${path}: ${why}.` });
   }
   const answer = await response.json().catch(() => null);
-  if (!response.ok) throw new Refusal(answer?.detail ? answer : { detail: `${method} ${path} answered ${response.status}.` });
+  if (!response.ok)
+    throw new Refusal(answer?.detail ? answer : { detail: `${method} ${path} answered ${response.status}.` });
   return answer;
 }

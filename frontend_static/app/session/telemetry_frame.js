@@ -8,9 +8,11 @@ export class TelemetryFrame {
   /** @param {ArrayBuffer} buffer @throws {Error} if it is no frame of this version, or cut short */
   constructor(buffer) {
     const header = new DataView(buffer);
-    if (buffer.byteLength < HEADER_BYTES || header.getUint32(0, true) !== MAGIC) throw new Error("not a telemetry frame");
+    if (buffer.byteLength < HEADER_BYTES || header.getUint32(0, true) !== MAGIC)
+      throw new Error("not a telemetry frame");
     const version = header.getUint16(4, true);
-    if (version !== VERSION) throw new Error(`telemetry frame version ${version}; this page reads ${VERSION}. Reload the page.`);
+    if (version !== VERSION)
+      throw new Error(`telemetry frame version ${version}; this page reads ${VERSION}. Reload the page.`);
     this.isHistory = (header.getUint16(6, true) & 1) === 1;
     this.channels = header.getUint32(8, true);
     this.samples = header.getUint32(12, true);
@@ -19,7 +21,8 @@ export class TelemetryFrame {
     this.startTime = header.getFloat64(32, true);
     this.sampleTime = header.getFloat64(40, true);
     const expected = HEADER_BYTES + 4 * this.channels * this.samples;
-    if (buffer.byteLength !== expected) throw new Error(`telemetry frame of ${buffer.byteLength} bytes; expected ${expected}`);
+    if (buffer.byteLength !== expected)
+      throw new Error(`telemetry frame of ${buffer.byteLength} bytes; expected ${expected}`);
     this.buffer = buffer;
   }
 

@@ -5,7 +5,10 @@ import { KEYS, ROW_KEYS } from "../keys.js";
 export class KeysDialog {
   constructor() {
     this.dialog = document.getElementById("keys-dialog");
-    const rows = [...KEYS, ...ROW_KEYS].map(({ shown, text }) => [element("dt", {}, element("kbd", {}, shown)), element("dd", {}, text)]);
+    const rows = [...KEYS, ...ROW_KEYS].map(({ shown, text }) => [
+      element("dt", {}, element("kbd", {}, shown)),
+      element("dd", {}, text),
+    ]);
     document.getElementById("keys-list").append(...rows.flat());
     document.getElementById("show-keys").addEventListener("click", () => this.show());
   }

@@ -32,10 +32,15 @@ export class LoopHealth {
       `real-time factor ${fixed(pace.achieved, 3)} of ${pace.asked} asked`,
     ].join("\n");
     setText(this.pages, pages > 1 ? `${this.session.you} of ${pages}` : this.session.you);
-    this.pages.title = pages > 1 ? `You are ${this.session.you}; ${pages} pages are open on this session, all may tune and stop` : "You are the only page on this session";
+    this.pages.title =
+      pages > 1
+        ? `You are ${this.session.you}; ${pages} pages are open on this session, all may tune and stop`
+        : "You are the only page on this session";
   }
 }
 
 function spread(times) {
-  return times ? `${fixed(times.p50, 0)} / ${fixed(times.p99, 0)} / ${fixed(times.worst, 0)} µs (p50 / p99 / worst)` : "unknown";
+  return times
+    ? `${fixed(times.p50, 0)} / ${fixed(times.p99, 0)} / ${fixed(times.worst, 0)} µs (p50 / p99 / worst)`
+    : "unknown";
 }

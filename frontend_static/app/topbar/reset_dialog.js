@@ -13,7 +13,9 @@ export class ResetDialog {
   ask(snapshot, confirmed) {
     if (this.dialog.open) return;
     this.#confirmed = confirmed;
-    const then = ["stopped", "fault"].includes(snapshot?.state) ? "The session is then ready; start it with ▶." : "It starts again at once.";
+    const then = ["stopped", "fault"].includes(snapshot?.state)
+      ? "The session is then ready; start it with ▶."
+      : "It starts again at once.";
     setText(this.text, `Time goes back to 0 and the plots are cleared for every page. The tuning stays. ${then}`);
     this.dialog.returnValue = "";
     this.dialog.show();

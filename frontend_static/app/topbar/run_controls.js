@@ -54,7 +54,8 @@ export class RunControls {
     this.pauseButton.dataset.icon = isRunning || !STARTABLE.has(state) ? "pause" : "resume";
     const label = isRunning ? "Pause" : state === "ready" ? "Run" : "Resume";
     this.pauseButton.setAttribute("aria-label", label);
-    this.pauseButton.title = this.pauseButton.disabled && isConnected ? `${label}: not while ${state}. Reset first.` : `${label} (Space)`;
+    this.pauseButton.title =
+      this.pauseButton.disabled && isConnected ? `${label}: not while ${state}. Reset first.` : `${label} (Space)`;
     this.stepButton.hidden = state !== "paused";
     for (const control of [this.stepButton, this.resetButton, this.pace]) control.disabled = !isConnected;
     if (!snapshot) return;

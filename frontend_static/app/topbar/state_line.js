@@ -1,6 +1,13 @@
 import { setText } from "../element.js";
 
-const WORDS = { starting: "Starting", ready: "Ready", running: "Running", paused: "Paused", stopped: "Stopped", fault: "Fault" };
+const WORDS = {
+  starting: "Starting",
+  ready: "Ready",
+  running: "Running",
+  paused: "Paused",
+  stopped: "Stopped",
+  fault: "Fault",
+};
 
 /** Rig mark, state dot, state word and sentence: what the session does, and why. */
 export class StateLine {
@@ -23,7 +30,9 @@ export class StateLine {
     if (!isConnected) return this.#say("lost", "No connection", "what is shown is old");
     const word = WORDS[snapshot.state] ?? snapshot.state;
     const sentence = snapshot.sentence.replace(`by ${this.session.you} `, "by you ");
-    const rest = sentence.toLowerCase().startsWith(word.toLowerCase()) ? sentence.slice(word.length).replace(/^[,:.\s]+/, "") : sentence;
+    const rest = sentence.toLowerCase().startsWith(word.toLowerCase())
+      ? sentence.slice(word.length).replace(/^[,:.\s]+/, "")
+      : sentence;
     this.#say(snapshot.state, word, rest);
   }
 

@@ -16,7 +16,10 @@ export class StopButton {
   async press() {
     this.button.classList.add("is-pressed");
     setTimeout(() => this.button.classList.remove("is-pressed"), 400);
-    const answered = this.session.command("stop").then(() => true, () => false);
+    const answered = this.session.command("stop").then(
+      () => true,
+      () => false,
+    );
     const late = new Promise((resolve) => setTimeout(() => resolve(false), this.session.isConnected ? PATIENCE_MS : 0));
     if (await Promise.race([answered, late])) return;
     try {

@@ -3,7 +3,9 @@ export class Views {
   constructor() {
     this.tabs = [...document.querySelectorAll('nav [role="tab"]')];
     for (const tab of this.tabs) tab.addEventListener("click", () => this.show(tab.dataset.view));
-    this.show(this.tabs.find((tab) => `#${tab.dataset.view}` === location.hash)?.dataset.view ?? this.tabs[0].dataset.view);
+    this.show(
+      this.tabs.find((tab) => `#${tab.dataset.view}` === location.hash)?.dataset.view ?? this.tabs[0].dataset.view,
+    );
   }
 
   show(view) {

@@ -1,0 +1,26 @@
+"""Run a benchmark by name; each is a module with a `main()` whose docstring says what it measures."""
+
+import argparse
+import importlib
+
+BENCHMARKS = {
+    "numbers": ("benchmarks.numbers.report", "every number of the theory page, recomputed by this code"),
+    "kernel": ("benchmarks.kernel", "time of a simulated run, beside scipy and python-control"),
+}
+
+
+def main() -> None:
+    """Parse the command line and run the benchmark it names."""
+    listing = "\n".join(f"  {name:10} {words}" for name, (_, words) in BENCHMARKS.items())
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks",
+        description=f"benchmarks:\n{listing}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("name", nargs="*", choices=[[], *BENCHMARKS], metavar="NAME", help="default: all, one by one")
+    for name in parser.parse_args().name or BENCHMARKS:
+        importlib.import_module(BENCHMARKS[name][0]).main()
+
+
+if __name__ == "__main__":
+    main()
