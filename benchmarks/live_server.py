@@ -21,6 +21,7 @@ from websockets.asyncio.client import ClientConnection, connect
 
 HEADER = struct.Struct("<4sHHIIIIQdd")
 START_LIMIT_S = 120.0
+CHROMIUM_FLAGS = ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-background-networking"]
 
 
 @dataclass(frozen=True)
@@ -92,9 +93,8 @@ def open_page(port: int) -> Iterator[None]:
     """Keep the dashboard open in a headless Chromium."""
     from playwright.sync_api import sync_playwright
 
-    flags = ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-background-networking"]
     with sync_playwright() as browser:
-        chromium = browser.chromium.launch(executable_path=os.environ.get("CHROMIUM", "/usr/bin/chromium"), args=flags)
+        chromium = browser.chromium.launch(executable_path=os.environ.get("CHROMIUM", "/usr/bin/chromium"), args=CHROMIUM_FLAGS)
         page = chromium.new_page(viewport={"width": 1366, "height": 768})
         page.goto(f"http://127.0.0.1:{port}/", wait_until="load", timeout=60_000)
         yield

@@ -66,7 +66,7 @@ class Page:
     async def _send_all(self, history_s: float) -> None:
         session = self._session
         hello = {
-            "type": "hello", "protocol": 1, "you": self.name, "version": __version__,
+            "type": "hello", "protocol": 1, "run": session.run_id, "you": self.name, "version": __version__,
             "channels": [channel._asdict() for channel in CHANNELS], "snapshot": session.snapshot(),
             "document": session.document(), "events": session.log.last(100),
         }  # fmt: skip

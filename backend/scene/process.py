@@ -13,6 +13,7 @@ import signal
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import TYPE_CHECKING, Final
@@ -48,7 +49,8 @@ def run_scene(ring_name: str, port_sender: Connection) -> None:
     scene = ActuatorScene(server)
     latest = _pose_source(ring_name)
     try:
-        port_sender.send(server.get_port())
+        with suppress(BrokenPipeError):  # the keeper has already left: follow sees it too
+            port_sender.send(server.get_port())
         follow(latest, scene.update, lambda: bool(server.get_clients()), port_sender)
     finally:
         server.stop()

@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import uuid
 from collections.abc import Awaitable, Callable
 from itertools import count
 from typing import Any
@@ -15,6 +16,7 @@ from backend.problem import Problem, from_validation, refused
 from backend.session.arguments import Loading, Named, Nothing, Pace, Samples
 from backend.session.changes import Changes, differences, with_changes
 from backend.session.control_link import ControlLink
+from backend.session.disturbance_watch import DisturbanceWatch
 from backend.session.events import Event, EventLog, Kind, Severity
 from backend.session.fault_snapshot import save_fault_snapshot
 from backend.session.health import Health
@@ -52,10 +54,13 @@ class Session:
         self._reason: str | None = None
         self._stopped_by: str | None = None
         self.epoch, self._time_s, self._pace = 0, 0.0, 1.0
+        self._changed_at_s = 0.0  # session time of the last change of state
         self._segment, self._flag = Ring(), StopFlag()
         self.ring_name = self._segment.name
+        self.run_id = uuid.uuid4().hex
         self.ring = RingReader(self._segment.name)
         self._health, self._limits = Health(self.ring), LimitWatch(self.ring)
+        self._loads = DisturbanceWatch(self.ring)
         self.listeners: set[Callable[[Message], None]] = set()
         self.log = EventLog(self._tell_event)
         self._notes = ChangeNotes(self._tell_change)
@@ -85,6 +90,7 @@ class Session:
     def start(self) -> None:
         """Start the control process and the workers in the background; the state says when they are ready."""
         self._spawn(self._begin())
+        self._spawn(self._warm_workers())
         self._spawn(self._watch())
 
     async def close(self) -> None:
@@ -121,12 +127,22 @@ class Session:
             if last is not None:
                 self._note("scenario", f"{self.scenario.name} and its last tuning are back", "server")
 
+    async def _warm_workers(self) -> None:
+        """Start the workers beside the control process; a worker that fails to start is tried again when it is needed."""
+        for worker in (self._pool.design, self._pool.simulation):
+            try:
+                await worker.start()
+            except JobFailedError as failure:
+                logger.warning("%s", failure)
+
     async def _watch(self) -> None:
         """Tell of limits as they begin, and of the state twice a second."""
         for turn in count(1):
             await asyncio.sleep(WATCH_S)
             for epoch, time_s, sentence in self._limits.begun():
                 self.log.add("limit", sentence, "rig", epoch, time_s, "warning")
+            for epoch, time_s, sentence in self._loads.passed(self.scenario.disturbances):
+                self.log.add("disturbance", sentence, "scenario", epoch, time_s)
             if turn % STATE_EVERY == 0 and self.listeners:
                 self._tell_state()
 
@@ -154,7 +170,7 @@ class Session:
             self._time_s = max(self._time_s, float(newest[INDEX["time"]]))
         return {
             "state": self.state,
-            "sentence": state_sentence(self.state, self._reason, self._time_s, self._stopped_by, self.scenario),
+            "sentence": state_sentence(self.state, self._reason, self._changed_at_s, self._stopped_by, self.scenario),
             "reason": self._reason,
             "rig": {"kind": "simulated", "label": "simulated rig"},
             "time_s": self._time_s,
@@ -200,7 +216,8 @@ class Session:
             return
         self.state, self._reason = report.state, report.reason
         self.epoch, self._time_s = report.epoch, report.time_s
-        sentence = state_sentence(self.state, self._reason, self._time_s, self._stopped_by, self.scenario)
+        self._changed_at_s = report.time_s
+        sentence = state_sentence(self.state, self._reason, self._changed_at_s, self._stopped_by, self.scenario)
         severity: Severity = "fault" if self.state == "fault" else "warning" if self.state == "stopped" else "info"
         by = self._stopped_by or "server" if self.state == "stopped" else "session"
         self.log.add("fault" if self.state == "fault" else "state", sentence, by, self.epoch, self._time_s, severity)

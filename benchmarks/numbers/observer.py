@@ -129,7 +129,7 @@ def biases() -> list[Line]:
     """Steady error of d^ under d = t^2 at 1 ms, g 100: none in the exact form."""
     lines = []
     for words, form in (("exact", velocity_exact), ("first-order hold", velocity_first_order_hold)):
-        a, h, b0, b1 = form(100.0, T)
+        a, h, _, _ = form(100.0, T)
         estimate, v = np.zeros(3), 0.0
         for k in range(1, 2001):
             v_next = -((k * T) ** 3) / 3.0

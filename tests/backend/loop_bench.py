@@ -50,7 +50,7 @@ class Bench:
         self._numbers = 0
 
     def new_loop(self) -> ControlLoop:
-        return ControlLoop(self.writer, self.flag, self.pipe, Pacer(lambda: self.slept_s, self.sleep))  # type: ignore[arg-type]
+        return ControlLoop(self.writer, self.flag, self.pipe, Pacer(lambda: self.slept_s, lambda s: self.sleep(s)))  # type: ignore[arg-type]
 
     def sleep(self, duration_s: float) -> None:
         self.slept_s += duration_s

@@ -1,41 +1,13 @@
-"""Telemetry frames decode as docs/protocol.md says; the decoder here knows that page only."""
-
-import struct
-from typing import NamedTuple
+"""Telemetry frames decode as docs/protocol.md says; its decoder knows that page only."""
 
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from backend.telemetry.frames import frames
 from backend.telemetry.ring import COLUMNS, EPOCH, PERIOD_S, WIDTH, Piece
+from tests.backend.frame_decoder import decoded
 from vssea_core.channels import CHANNELS
-
-
-class Decoded(NamedTuple):
-    magic: bytes
-    version: int
-    flags: int
-    channels: int
-    samples: int
-    epoch: int
-    reserved: int
-    sequence: int
-    t0: float
-    dt: float
-    values: NDArray[np.float32]
-
-
-def decoded(frame: bytes) -> Decoded:
-    """A frame taken apart by the table of the protocol."""
-    magic = frame[0:4]
-    version, flags = struct.unpack_from("<HH", frame, 4)
-    channels, samples, epoch, reserved = struct.unpack_from("<IIII", frame, 8)
-    (sequence,) = struct.unpack_from("<Q", frame, 24)
-    t0, dt = struct.unpack_from("<dd", frame, 32)
-    values = np.frombuffer(frame, "<f4", offset=48).reshape(channels, samples)
-    return Decoded(magic, version, flags, channels, samples, epoch, reserved, sequence, t0, dt, values)
 
 
 def piece_of(runs: list[tuple[int, float]], first: int = 0) -> Piece:

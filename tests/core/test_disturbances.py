@@ -1,6 +1,7 @@
 """Disturbance terms: their value at the integrator's instants, their sum, and start and end on whole ticks."""
 
 import math
+from functools import partial
 
 import numba
 import numpy as np
@@ -56,7 +57,7 @@ def test_the_loads_of_a_substep_are_those_of_the_formula(chosen: list[Disturbanc
 @given(
     start=st.integers(0, 5000),
     length=st.integers(1, 300),
-    early=st.floats(0.0, 0.9),
+    early=st.sampled_from([0.0, 0.0, 0.001, 0.5, 0.9]),
     period=st.sampled_from([1e-3, 7e-4, 2e-3]),
 )
 @settings(deadline=None, max_examples=60)
@@ -64,7 +65,11 @@ def test_a_term_acts_from_the_first_tick_at_or_after_its_start_to_the_first_at_o
     start: int, length: int, early: float, period: float
 ) -> None:
     """Times between two ticks snap to the later one, so a whole period is either loaded or not."""
-    times = {"start_s": max(0.0, (start - early) * period), "end_s": (start + length - early) * period}
+    decimal = partial(round, ndigits=9)  # as a person writes it, which is not k T in floating point
+    times = {
+        "start_s": decimal(max(0.0, (start - early) * period)),
+        "end_s": decimal((start + length - early) * period),
+    }
     rows = disturbance_rows([ConstantDisturbance(torque=2.0, **times)], period)
     loaded = [load_at(rows, k * period) for k in range(start + length + 3)]
     assert np.flatnonzero(loaded).tolist() == list(range(start, start + length))

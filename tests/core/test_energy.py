@@ -86,14 +86,17 @@ def test_with_losses_energy_never_grows(start: PlantState, losses: Losses) -> No
     assert np.diff(total).max() <= 1e-8 * total[0] + 1e-12
 
 
-def test_end_stops_take_energy_and_never_return_it() -> None:
+@pytest.mark.parametrize(("stop", "rate"), [(0, -60.0), (1, 30.0)], ids=["stiff", "soft"])
+def test_end_stops_take_energy_and_never_return_it(stop: int, rate: float) -> None:
     stops = (50.0, 56.0)
-    start = PlantState(0.0, 0.0, 0.3, 0.0, 53.0, 30.0, 0.0)
+    start = PlantState(0.0, 0.0, 0.1, 0.0, 53.0, rate, 0.0)
     run = coasting(plant(Losses(), stops=stops), start, 2000, period=2.5e-4)
     position = run["stiffness_motor_position"]
-    assert np.any(position == stops[1])
+    assert np.any(position == stops[stop])
     assert np.all((position >= stops[0]) & (position <= stops[1]))
-    assert np.diff(energy(run)).max() < 1e-6
+    total = energy(run)
+    assert np.diff(total).max() < 1e-6
+    assert total[-1] < 0.95 * total[0]
 
 
 def test_the_printed_back_torque_throws_the_stiffness_motor_into_its_stop_within_10_ms() -> None:

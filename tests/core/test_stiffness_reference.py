@@ -9,7 +9,7 @@ from vssea_core.actuator.parameters import StiffnessMechanism
 from vssea_core.actuator.spring import stiffness_motor_position
 from vssea_core.control.tuning import StiffnessLoop, Tuning
 from vssea_core.signals.documents import ConstantStiffness, MoveStiffness
-from vssea_core.signals.stiffness import MAX_STIFFNESS_RATE, SPEED_SHARE, Slew, advance_stiffness, slew_row
+from vssea_core.signals.stiffness import MAX_STIFFNESS_RATE, Slew, advance_stiffness, slew_row
 
 T, MECHANISM = 1e-3, StiffnessMechanism()
 stiffnesses = st.floats(20.0, 1000.0)
@@ -34,7 +34,7 @@ def test_a_command_is_reached_within_the_limits_of_rate_and_speed(first: float, 
     theta = targets[:, 0]
     k = MECHANISM.spring_constant / (2.0 * theta**3)
     assert k[-1] == pytest.approx(last, rel=1e-6)
-    assert np.abs(targets[:, 1]).max() <= SPEED_SHARE * MECHANISM.speed_limit * (1.0 + 1e-9)
+    assert np.abs(targets[:, 1]).max() < MECHANISM.speed_limit
     # the filter lags behind the slewed command, so it may follow a rate that was right a little before
     assert np.abs(np.diff(k)).max() / T <= 1.5 * MAX_STIFFNESS_RATE
     assert min(first, last) * (1.0 - 1e-9) <= k.min()

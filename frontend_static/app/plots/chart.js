@@ -1,18 +1,12 @@
 import uPlot from "/vendor/uPlot.esm.js";
 import { element } from "../element.js";
+import { RIGHT_PX, chartAxes } from "./chart_axes.js";
 import { channelsOf } from "./chart_list.js";
 import { Envelope } from "./envelope.js";
 import { EventMarks } from "./event_marks.js";
 import { Legend } from "./legend.js";
 import { linePath } from "./line_path.js";
-import { niceTicks, tickTexts } from "./nice_ticks.js";
 import { YRange } from "./y_range.js";
-
-const LEFT_PX = 52;
-const RIGHT_PX = 44;
-const TIME_AXIS_PX = 22;
-const TICK_EVERY_PX = 21;
-const FONT = '11px system-ui, -apple-system, "Segoe UI", sans-serif';
 
 /** One of the stacked charts: legend strip, uPlot, and y scales that keep still. */
 export class Chart {
@@ -198,7 +192,7 @@ export class Chart {
         left: range("left"),
         ...(this.ranges.right ? { right: range("right") } : {}),
       },
-      axes: this.#axes(),
+      axes: chartAxes(this.layout, palette, this.hasTimeAxis),
       series: [
         {},
         ...this.series.map((series) => this.#line(series)),
@@ -267,42 +261,6 @@ export class Chart {
         isShown: () => this.#limitIsNear,
       }),
       points: { show: false },
-    };
-  }
-
-  #axes() {
-    const { palette } = this.stack;
-    const base = {
-      font: FONT,
-      stroke: () => palette.colour("axis-text"),
-      grid: { stroke: () => palette.colour("grid"), width: 1 },
-      ticks: { show: false },
-      gap: 6,
-    };
-    const time = {
-      ...base,
-      size: this.hasTimeAxis ? TIME_AXIS_PX : 0,
-      splits: (plot, _, min, max) =>
-        niceTicks(min, max, Math.max(2, Math.min(8, plot.bbox.width / devicePixelRatio / 90))),
-      values: (_, ticks) => (this.hasTimeAxis ? tickTexts(ticks).map((text) => `${text} s`) : ticks.map(() => "")),
-    };
-    return [
-      time,
-      this.#yAxis(base, "left", 3, LEFT_PX),
-      ...(this.ranges.right ? [this.#yAxis(base, "right", 1, RIGHT_PX)] : []),
-    ];
-  }
-
-  #yAxis(base, side, uplotSide, size) {
-    return {
-      ...base,
-      scale: side,
-      side: uplotSide,
-      size,
-      grid: { ...base.grid, show: side === "left" },
-      splits: (plot, _, min, max) =>
-        niceTicks(min, max, Math.max(2, Math.floor(plot.bbox.height / devicePixelRatio / TICK_EVERY_PX))),
-      values: (_, ticks) => tickTexts(ticks, this.layout[side].factor),
     };
   }
 }

@@ -1,6 +1,7 @@
 import { element } from "../element.js";
 import { firstAtOrAfter } from "../session/telemetry_store.js";
 import { Chart } from "./chart.js";
+import { TIME_AXIS_PX } from "./chart_axes.js";
 import { CHARTS, channelsOf } from "./chart_list.js";
 import { Span } from "./envelope.js";
 import { EventMarks } from "./event_marks.js";
@@ -8,7 +9,6 @@ import { MeasuringCursors } from "./measuring_cursors.js";
 import { Palette } from "./palette.js";
 import { TimeWindow } from "./time_window.js";
 
-const TIME_AXIS_PX = 22;
 const LEGEND_PX = 20;
 const LEAST_CHART_PX = 60;
 const LEGEND_PERIOD_MS = 100;

@@ -4,7 +4,6 @@ import { TelemetryStore } from "./telemetry_store.js";
 import { ScenarioDocument } from "../document/scenario_document.js";
 
 const EVENTS_KEPT = 300;
-const STALE_S = 1; // a snapshot may be half a second old
 
 /**
  * The page's one picture of the session: snapshot, document, events and telemetry, all as the server said them.
@@ -13,6 +12,8 @@ const STALE_S = 1; // a snapshot may be half a second old
  * `document` and `store`.
  */
 export class LiveSession extends EventTarget {
+  #run = null; // which run of the server the samples and events came from
+
   /** @param {string[]} channels names of the channels to keep @param {() => number} historySeconds */
   constructor(channels, historySeconds) {
     super();
@@ -75,13 +76,13 @@ export class LiveSession extends EventTarget {
   }
 
   #greet(hello) {
-    const { epoch, time_s } = hello.snapshot;
-    const wentBack = epoch < this.store.epoch || (epoch === this.store.epoch && time_s < this.store.lastTime - STALE_S);
-    if (this.store.epoch !== null && wentBack) this.store.clear({ restarted: true });
+    const otherRun = this.#run !== null && hello.run !== this.#run;
+    if (otherRun) this.store.clear({ restarted: true });
+    this.#run = hello.run;
     this.you = hello.you;
     this.channels = new Map(hello.channels.map((channel) => [channel.name, channel]));
     this.store.readChannels(hello.channels);
-    this.events = wentBack ? [] : this.events;
+    this.events = otherRun ? [] : this.events;
     this.dispatchEvent(new Event("hello"));
     if (hello.document) this.document.accept(hello.document);
     this.#log(hello.events);

@@ -53,6 +53,7 @@ export class TelemetryStore extends EventTarget {
 
   /** @returns {number} newest sample of a channel, NaN if there is none */
   latest(name) {
+    if (name === "time") return this.length ? this.lastTime : NaN;
     return this.length && this.has(name) ? this.#columns.get(name)[this.#end - 1] : NaN;
   }
 

@@ -1,0 +1,79 @@
+"""A page of the live websocket as tests see it."""
+
+import json
+from collections import deque
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any, Self
+
+from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Subprotocol
+
+from tests.backend.frame_decoder import Decoded, decoded
+from tests.backend.server import Server
+
+LIMIT_S = 20.0
+LARGEST_LOOK = 5000  # messages looked through before giving up
+
+
+class LivePage:
+    """One connection; messages that were passed over while looking for another stay for later."""
+
+    def __init__(self, server: Server, history_s: float = 0.0, **options: Any) -> None:
+        address = f"ws://127.0.0.1:{server.port}/api/live?history_s={history_s}"
+        self.socket: ClientConnection = connect(
+            address, subprotocols=[Subprotocol("vssea-1")], compression=None, max_size=None, proxy=None, **options
+        )
+        self._messages: deque[dict[str, Any]] = deque()
+        self._frames: deque[bytes] = deque()
+        self._number = 0
+        self.hello = self.next_message("hello")
+
+    def _receive(self) -> None:
+        content = self.socket.recv(LIMIT_S)
+        if isinstance(content, bytes):
+            self._frames.append(content)
+        else:
+            self._messages.append(json.loads(content, parse_constant=_no_constant))
+
+    def next_message(self, kind: str, fits: Callable[[dict[str, Any]], bool] = lambda message: True) -> dict[str, Any]:
+        """The next message of a kind that fits; others are kept."""
+        for _ in range(LARGEST_LOOK):
+            for message in self._messages:
+                if message["type"] == kind and fits(message):
+                    self._messages.remove(message)
+                    return message
+            self._receive()
+        raise AssertionError(f"no {kind} that fits")
+
+    def next_frame(self) -> bytes:
+        while not self._frames:
+            self._receive()
+        return self._frames.popleft()
+
+    def next_sample_after(self, fits: Callable[[Decoded], bool]) -> Decoded:
+        """The next frame that fits."""
+        for _ in range(LARGEST_LOOK):
+            if fits(frame := decoded(self.next_frame())):
+                return frame
+        raise AssertionError("no frame that fits")
+
+    def send(self, command: str, **arguments: Any) -> int:
+        self._number += 1
+        self.socket.send(json.dumps({"id": self._number, "command": command, "arguments": arguments}))
+        return self._number
+
+    def ask(self, command: str, **arguments: Any) -> dict[str, Any]:
+        """Send a command and return its reply."""
+        number = self.send(command, **arguments)
+        return self.next_message("reply", lambda reply: reply["id"] == number)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.socket.close()
+
+
+def _no_constant(literal: str) -> None:
+    raise AssertionError(f"{literal} is not JSON")

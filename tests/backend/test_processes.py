@@ -1,0 +1,96 @@
+"""A process that dies takes nothing with it: it is told, and its work goes on in a new one."""
+
+import os
+import signal
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from tests.backend.frame_decoder import decoded
+from tests.backend.live_page import LivePage
+from tests.backend.server import Server, until
+
+
+@pytest.fixture(scope="module")
+def own(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A server whose processes may be killed."""
+    started = Server(tmp_path_factory.mktemp("data"))
+    try:
+        yield started.wait_until_running()
+    finally:
+        started.terminate()
+
+
+def state(server: Server) -> Any:
+    return server.get("/api/health").json()["session"]
+
+
+def killed(server: Server, role: str) -> int:
+    """Kill a child and return its process id, once it is gone."""
+    pid = until(lambda: server.children().get(role))
+    os.kill(pid, signal.SIGKILL)
+    until(lambda: pid not in server.children().values())
+    return pid
+
+
+def test_a_killed_simulation_worker_is_replaced_at_the_next_call(own: Server) -> None:
+    assert own.post("/api/simulate").status_code == 200
+    killed(own, "simulation")
+    answer = until(lambda: (found := own.post("/api/simulate")).status_code == 200 and found)
+    assert isinstance(answer, httpx.Response)
+    assert answer.json()["samples"] == 10_000
+    assert state(own) == "running"
+
+
+def test_a_worker_killed_at_work_is_told_and_the_next_call_works(own: Server) -> None:
+    long = {"duration_s": 120.0, "timing": {"sample_time_s": 0.001}}
+    own.post("/api/simulate")
+    with ThreadPoolExecutor(1) as page:
+        waiting = page.submit(lambda: httpx.post(own.url + "/api/simulate?trajectory=csv", json=long, timeout=60.0))
+        until(lambda: busy(own, "simulation"))
+        killed(own, "simulation")
+        answer = waiting.result(60.0)
+    assert answer.status_code == 503
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert "try again" in answer.json()["detail"]
+    assert own.post("/api/simulate").status_code == 200
+
+
+def busy(server: Server, role: str) -> bool:
+    pid = server.children().get(role)
+    return pid is not None and " R " in Path(f"/proc/{pid}/stat").read_text()
+
+
+def test_a_killed_design_worker_is_replaced_at_the_next_tuning(own: Server) -> None:
+    own.post("/api/session/tune", {"changes": {"observer.bandwidth": 90.0}}).raise_for_status()
+    killed(own, "design")
+    tuned = own.post("/api/session/tune", {"changes": {"observer.bandwidth": 95.0}})
+    assert tuned.status_code == 200, tuned.text
+    assert state(own) == "running"
+
+
+def test_a_killed_control_process_is_a_fault_and_a_reset_starts_it_anew(own: Server) -> None:
+    with LivePage(own) as page:
+        before = own.get("/api/session").json()
+        killed(own, "control")
+        until(lambda: state(own) == "fault")
+        assert "ended unexpectedly" in own.get("/api/session").json()["reason"]
+        refused = own.post("/api/session/tune", {"changes": {"observer.bandwidth": 60.0}})
+        assert refused.status_code == 503
+        assert refused.headers["content-type"] == "application/problem+json"
+        with ThreadPoolExecutor(4) as pages:  # everybody presses it
+            answers = list(pages.map(lambda _: own.post("/api/session/reset").status_code, range(4)))
+        assert answers == [200] * 4
+        assert state(own) == "ready"
+        assert list(own.children()).count("control") == 1
+        own.post("/api/session/resume").raise_for_status()
+        after = own.get("/api/session").json()
+        assert after["scenario"] == before["scenario"]
+        assert after["epoch"] > before["epoch"]
+        epochs = [decoded(page.next_frame()).epoch for _ in range(5)]
+        newest = decoded(until(lambda: (frame := page.next_frame()) and decoded(frame).epoch > max(epochs[0], before["epoch"]) and frame))
+        assert newest.t0 < 60.0
