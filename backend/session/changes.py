@@ -68,24 +68,21 @@ def _set(target: dict[str, Any], part: str, path: str, value: Any) -> None:
 
 def _change_kind(here: dict[str, Any], kind: Any, place: str) -> None:
     """Take another kind at `place`: its own defaults, and what both kinds share."""
-    shared = _fields_of_kind(kind, place)
-    kept = {name: value for name, value in here.items() if name in shared and name != "kind"}
+    model = _alternative(kind, place)
+    own = model().model_dump(mode="json") if model else {}
+    kept = {name: value for name, value in here.items() if name in own}
     here.clear()
-    here.update(kept, kind=kind)
+    here.update(own | kept | {"kind": kind})
 
 
-def _fields_of_kind(kind: Any, place: str) -> set[str]:
-    """Return the fields of the alternative `kind` at `place`; a reference and a disturbance both have a sine."""
-    alternatives: list[Any] = [Scenario]
+def _alternative(kind: Any, place: str) -> type[BaseModel] | None:
+    """Return the model of `kind` at `place`, such as tuning.observer; a reference and a disturbance both have a sine."""
+    models: list[type[BaseModel]] = [Scenario]
     for name in place.split("."):
-        fields = [model.model_fields[name] for model in alternatives if name in model.model_fields]
-        alternatives = [model for field in fields for model in models_of(field.annotation)]
-    return {
-        name
-        for model in alternatives
-        if "kind" in model.model_fields and model.model_fields["kind"].default == kind
-        for name in model.model_fields
-    }
+        fields = [model.model_fields[name] for model in models if name in model.model_fields]
+        models = [model for field in fields for model in models_of(field.annotation)]
+    kinds = {model.model_fields["kind"].default: model for model in models if "kind" in model.model_fields}
+    return kinds.get(kind) if isinstance(kind, str) else None
 
 
 def _unknown(part: str, path: str, here: Any) -> Problem:

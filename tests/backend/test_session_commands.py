@@ -52,24 +52,22 @@ def test_a_whole_tuning_replaces_the_old_one(session: httpx.Client) -> None:
 
 
 @pytest.mark.parametrize(
-    ("command", "part", "first", "then", "kept"),
+    ("command", "part", "path", "first", "then", "kept"),
     [
-        ("set_reference", "reference", {"kind": "move", "target": 0.7, "start_s": 0.1}, "sine", {}),
-        ("set_reference", "reference", {"kind": "move", "target": 0.7, "start_s": 0.1}, "step", {"target": 0.7, "start_s": 0.1}),
-        ("set_reference", "reference", {"kind": "step", "dwell_s": 3.0}, "move", {"dwell_s": 3.0}),
-        ("set_stiffness", "stiffness_reference", {"kind": "constant", "stiffness": 300.0}, "move", {"stiffness": 300.0}),
-        ("set_stiffness", "stiffness_reference", {"kind": "move", "stiffness": 300.0}, "constant", {"stiffness": 300.0}),
-        ("tune", "tuning.observer", {"kind": "velocity", "bandwidth": 90.0}, "position", {"bandwidth": 90.0}),
-        ("tune", "tuning.controller", {"kind": "sliding_mode"}, "state_feedback", {}),
+        ("set_reference", "reference", "", {"kind": "move", "target": 0.7, "start_s": 0.1}, "sine", {}),
+        ("set_reference", "reference", "", {"kind": "move", "target": 0.7, "start_s": 0.1}, "step", {"target": 0.7, "start_s": 0.1}),
+        ("set_reference", "reference", "", {"kind": "step", "dwell_s": 3.0}, "move", {"dwell_s": 3.0}),
+        ("set_stiffness", "stiffness_reference", "", {"kind": "constant", "stiffness": 300.0}, "move", {"stiffness": 300.0}),
+        ("set_stiffness", "stiffness_reference", "", {"kind": "move", "stiffness": 300.0}, "constant", {"stiffness": 300.0}),
+        ("tune", "tuning.observer", "observer.", {"kind": "velocity", "bandwidth": 90.0}, "position", {"bandwidth": 90.0}),
+        ("tune", "tuning.controller", "controller.", {"kind": "sliding_mode"}, "state_feedback", {}),
     ],
 )  # fmt: skip
 def test_another_kind_takes_its_own_defaults_and_keeps_what_both_share(
-    session: httpx.Client, command: str, part: str, first: dict[str, Any], then: str, kept: dict[str, Any]
+    session: httpx.Client, command: str, part: str, path: str, first: dict[str, Any], then: str, kept: dict[str, Any]
 ) -> None:
-    prefix = part.removeprefix("tuning").removeprefix(part if "." not in part else "").lstrip(".")
-    path = f"{prefix}.kind".lstrip(".")
-    ask(session, command, changes={f"{prefix}.{name}".lstrip("."): value for name, value in first.items()})
-    ask(session, command, changes={path: then})
+    ask(session, command, changes={f"{path}{name}": value for name, value in first.items()})
+    ask(session, command, changes={f"{path}kind": then})
     found = scenario(session)
     for name in part.split("."):
         found = found[name]
@@ -101,7 +99,7 @@ def test_pause_step_and_resume(session: httpx.Client) -> None:
     held = snapshot(session)
     assert (held["state"], snapshot(session)["time_s"]) == ("paused", held["time_s"])
     stepped = ask(session, "step", samples=250)
-    assert stepped["time_s"] == pytest.approx(held["time_s"] + 0.251)  # a sample's time is that of its tick
+    assert stepped["time_s"] == pytest.approx(held["time_s"] + 0.250)
     ask(session, "resume")
     assert state(session) == "running"
 
