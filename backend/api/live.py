@@ -20,7 +20,9 @@ from vssea_core.channels import CHANNELS
 logger = logging.getLogger(__name__)
 SUBPROTOCOL = "vssea-1"
 BATCH_S = 1.0 / 30.0
-SEND_LIMIT_S = 2.0
+SEND_LIMIT_S = 10.0
+"""A page that takes nothing for so long is let go; one that goes on reading before is moved to the newest data."""
+CLOSE_LIMIT_S = 2.0
 LONGEST_HISTORY_S = 60.0
 FAR_BEHIND_S = 2.0
 QUEUED_MESSAGES = 400
@@ -83,7 +85,7 @@ class Page:
                     async with asyncio.timeout_at(due):
                         await self._news.wait()
         with suppress(RuntimeError, WebSocketDisconnect, TimeoutError):
-            async with asyncio.timeout(SEND_LIMIT_S):
+            async with asyncio.timeout(CLOSE_LIMIT_S):
                 await self._socket.close(TRY_AGAIN, "This page was too slow.")
 
     async def _send_messages(self) -> None:

@@ -5,7 +5,7 @@ from functools import partial
 
 import numba
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from vssea_core.signals.disturbances import INSTANTS, disturbance_rows, load_at, loads_of_step
@@ -60,6 +60,7 @@ def test_the_loads_of_a_substep_are_those_of_the_formula(chosen: list[Disturbanc
     early=st.sampled_from([0.0, 0.0, 0.001, 0.5, 0.9]),
     period=st.sampled_from([1e-3, 7e-4, 2e-3]),
 )
+@example(start=17, length=8, early=0.0, period=7e-4)  # 17 T and 25 T fall a hair short of 0.0119 and 0.0175
 @settings(deadline=None, max_examples=60)
 def test_a_term_acts_from_the_first_tick_at_or_after_its_start_to_the_first_at_or_after_its_end(
     start: int, length: int, early: float, period: float

@@ -1,0 +1,105 @@
+"""A page that stops reading: the others notice nothing, and it is skipped ahead and told, or let go."""
+
+import asyncio
+import socket
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Any
+
+import httpx
+import pytest
+
+from backend.api import live
+from tests.backend.frame_decoder import decoded
+from tests.backend.live_page import LivePage
+from tests.backend.server import Server
+
+BURST = 10_000
+BURSTS = 12  # far more than the buffers on the way hold
+
+
+@pytest.fixture
+def slow(server: Server, session: httpx.Client) -> Iterator[LivePage]:
+    """A page with small buffers that reads only when told to."""
+    plug = socket.socket()
+    plug.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    plug.connect(("127.0.0.1", server.port))
+    with LivePage(server, sock=plug, max_queue=1) as page:
+        yield page
+
+
+def test_a_stalled_page_holds_up_nobody_and_is_told_what_it_missed(server: Server, slow: LivePage) -> None:
+    with LivePage(server) as other:
+        other.ask("pause")
+        written = [other.ask("step", samples=BURST)["ok"] for _ in range(BURSTS)]
+        assert written == [True] * BURSTS
+        frames = []
+        while sum(frame.samples for frame in frames) < BURST * BURSTS:
+            frames.append(decoded(other.next_frame()))
+        for one, next_one in pairwise(frames):
+            assert next_one.sequence == one.sequence + one.samples
+
+        missed = slow.next_message("missed")["samples"]
+        assert missed > BURST
+        other.ask("step", samples=1)
+        last = frames[-1].sequence + frames[-1].samples
+        seen = [decoded(slow.next_frame())]
+        while seen[-1].sequence < last:
+            seen.append(decoded(slow.next_frame()))
+        gaps = [after.sequence - before.sequence - before.samples for before, after in pairwise(seen)]
+        assert sorted(gaps)[-1] == missed
+        assert sorted(gaps)[:-1] == [0] * (len(gaps) - 1)
+        assert slow.ask("ping")["ok"]
+
+
+def test_a_stalled_page_can_still_stop(server: Server, slow: LivePage, session: httpx.Client) -> None:
+    with LivePage(server) as other:
+        other.ask("pause")
+        for _ in range(BURSTS):
+            other.ask("step", samples=BURST)
+        slow.send("stop")
+        stopped = other.next_message("state", lambda message: message["snapshot"]["state"] == "stopped")
+        assert slow.hello["you"] in stopped["snapshot"]["sentence"]
+
+
+class Stuck:
+    """A socket whose other end takes nothing."""
+
+    def __init__(self) -> None:
+        self.closed: tuple[int, str] | None = None
+
+    async def send_text(self, text: str) -> None:
+        await asyncio.Event().wait()
+
+    async def receive(self) -> dict[str, Any]:
+        await asyncio.Event().wait()
+        raise AssertionError
+
+    async def close(self, code: int, reason: str) -> None:
+        self.closed = code, reason
+
+
+class Quiet:
+    """As much of a session as a greeting needs."""
+
+    def __init__(self) -> None:
+        self.listeners: set[Any] = set()
+        self.log = self
+
+    def snapshot(self) -> dict[str, Any]:
+        return {}
+
+    def document(self) -> dict[str, Any]:
+        return {}
+
+    def last(self, count: int) -> list[Any]:
+        return []
+
+
+def test_a_page_that_takes_nothing_is_let_go_with_a_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(live, "SEND_LIMIT_S", 0.01)
+    stuck, session = Stuck(), Quiet()
+    page = live.Page(stuck, session, "page 1")  # type: ignore[arg-type]
+    asyncio.run(asyncio.wait_for(page.serve(0.0), 10.0))
+    assert stuck.closed == (1013, "This page was too slow.")
+    assert not session.listeners
