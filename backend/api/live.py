@@ -63,7 +63,9 @@ class Page:
             session.listeners.discard(self.post)
             for task in (sender, receiver, *self._commands):
                 task.cancel()
-            await asyncio.gather(sender, receiver, *self._commands, return_exceptions=True)
+            for ended in await asyncio.gather(sender, receiver, *self._commands, return_exceptions=True):
+                if isinstance(ended, Exception):
+                    logger.error("%s failed", self.name, exc_info=ended)
 
     async def _send_all(self, history_s: float) -> None:
         session = self._session

@@ -3,7 +3,6 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from backend.telemetry.ring import WIDTH
 from vssea_core.control.tuning import Tuning
 from vssea_core.scenario import Scenario
 from vssea_core.signals.disturbances import disturbance_rows
@@ -86,7 +85,7 @@ class Engine:
         """Advance by as many samples as `rows` (n, columns) has; return how many went well, and a fault's reason."""
         done, end = run(
             self._rig, self._before, self._prepared, self._reference, self._slew, self._link_terms, self._motor_terms,
-            self.enabled, self._tuning_id, self._state, self._sample, len(rows), rows[:, :WIDTH],
+            self.enabled, self._tuning_id, self._state, self._sample, len(rows), rows,
         )  # fmt: skip
         self._before = self._prepared
         self._sample += done

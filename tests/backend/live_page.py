@@ -46,6 +46,10 @@ class LivePage:
             self._receive()
         raise AssertionError(f"no {kind} that fits")
 
+    def passed_over(self, kind: str) -> list[dict[str, Any]]:
+        """Messages of a kind that came by while looking for something else."""
+        return [message for message in self._messages if message["type"] == kind]
+
     def next_frame(self) -> bytes:
         while not self._frames:
             self._receive()
@@ -71,7 +75,9 @@ class LivePage:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         self.socket.close()
 
 

@@ -86,7 +86,9 @@ def test_a_run_that_diverges_answers_with_its_ending_and_the_next_one_goes_on(ht
 
 
 def test_an_unstable_tuning_is_simulated_only_when_asked(http: httpx.Client) -> None:
-    unstable = SHORT | {"tuning": SHORT["tuning"] | {"controller": {"kind": "state_feedback", "natural_frequency": 400.0}}}
+    unstable = SHORT | {
+        "tuning": SHORT["tuning"] | {"controller": {"kind": "state_feedback", "natural_frequency": 400.0}}
+    }
     assert http.post("/api/simulate", json=unstable).status_code == 422
     assert http.post("/api/simulate", params={"allow_unstable": True}, json=unstable).status_code == 200
 

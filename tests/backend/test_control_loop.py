@@ -7,6 +7,7 @@ import pytest
 
 from backend.loop import messages
 from backend.loop.messages import Done, Refused
+from backend.loop.warm import compile_kernels
 from backend.telemetry.ring import EPOCH, WIDTH
 from tests.backend.loop_bench import Bench, prepared
 from vssea_core.actuator.parameters import Actuator, EquilibriumMotor
@@ -14,6 +15,9 @@ from vssea_core.control.tuning import StateFeedback
 from vssea_core.scenario import Scenario
 from vssea_core.scenarios import NOMINAL, REALISTIC
 from vssea_core.signals.documents import ConstantStiffness, MoveReference, SineReference
+from vssea_core.signals.disturbances import load_at
+from vssea_core.signals.references import change_reference
+from vssea_core.simulation.kernel import run
 from vssea_core.simulation.run import simulate
 
 AT_ONCE = NOMINAL.model_copy(update={"reference": SineReference(fade_in_s=0.0)})
@@ -166,3 +170,15 @@ def test_a_missed_period_is_counted_and_its_sample_is_not_made_up_for(bench: Ben
     bench.loop.run()
     assert bench.reader.overruns == 10
     assert bench.reader.written - before == 5
+
+
+def test_nothing_is_left_to_compile_once_the_loop_turns(bench: Bench) -> None:
+    compile_kernels()
+    bench.load(NOMINAL)
+    bench.ask(messages.SetReference(MoveReference()))
+    bench.ask(messages.SetPace(4.0))  # several samples a turn
+    bench.turns(3)
+    bench.flag.raise_()
+    bench.turns(3)
+    simulate(NOMINAL.model_copy(update={"duration_s": 0.01}))
+    assert [len(entry.signatures) for entry in (run, change_reference, load_at)] == [1, 1, 1]

@@ -92,5 +92,11 @@ def test_a_killed_control_process_is_a_fault_and_a_reset_starts_it_anew(own: Ser
         assert after["scenario"] == before["scenario"]
         assert after["epoch"] > before["epoch"]
         epochs = [decoded(page.next_frame()).epoch for _ in range(5)]
-        newest = decoded(until(lambda: (frame := page.next_frame()) and decoded(frame).epoch > max(epochs[0], before["epoch"]) and frame))
+        newest = decoded(
+            until(
+                lambda: (
+                    (frame := page.next_frame()) and decoded(frame).epoch > max(epochs[0], before["epoch"]) and frame
+                )
+            )
+        )
         assert newest.t0 < 60.0

@@ -96,18 +96,19 @@ def test_nominal_agrees_with_the_reference_over_its_whole_length() -> None:
 
 
 def test_realistic_behind_ideal_encoders_agrees_with_the_reference() -> None:
-    run, reference = both(varied(REALISTIC, sensors=Sensors(velocities=False), duration_s=4.0))
+    run, reference = both(varied(REALISTIC, sensors=Sensors(velocities=False)))
     assert link_gap(run, reference).max() < WITHIN
 
 
 def test_realistic_agrees_with_the_reference_until_rounding_turns_an_encoder_count() -> None:
-    """Quantisers make two exact solutions part: a gap of 1e-10 rad turns a count sooner or later, and is then half a count."""
+    """Quantisers make two exact solutions part: within a count the stiffness motor floats, and rounding of 1e-15 grows to
+    1e-7 of its 54 rad in some seconds; then one count turns a sample earlier. The load at 3 s lies before that."""
     run, reference = both(varied(REALISTIC, duration_s=4.0))
     resolution = np.array(encoders(REALISTIC.sensors, REALISTIC.actuator.motor))
     angles = np.column_stack([run["link_position"], run["motor_position"], run["stiffness_motor_position"]])
     differ = np.rint(angles / resolution) != np.rint(reference["state"][:, 0:6:2] / resolution)
     parted = int(np.argmax(differ.any(axis=1))) if differ.any() else len(run)
-    assert parted > 1000
+    assert parted > 3500
     gap = link_gap(run, reference)
     assert gap[:parted].max() < WITHIN
     assert gap.max() < resolution[0] / 2.0

@@ -2,7 +2,7 @@
 
 Torques are held by the drives over the period, so the solution is smooth and one step of order 5 is more accurate than
 several of order 4. The torque-loop lag is not a state of the integration (it would force steps of its own length):
-theta_e = theta~ + q, with q'' = (tau - u) / J_e in closed form, and theta~ is integrated.
+theta_e = theta~ + q, with J_e q'' + b_e q' = tau - u in closed form, and theta~ is integrated.
 """
 
 import math
@@ -44,6 +44,12 @@ class PlantState(NamedTuple):
     motor_torque: float
 
 
+FINEST = 8
+"""Steps of the finest integration for each step of the fine one."""
+SHARP_TURN = 1.0
+"""Share of the friction's smoothing velocity that may pass in one period before the finest integration is needed."""
+
+
 @inlined
 def dry_friction(plant, omega):
     """Return the Coulomb friction torque [N m], smooth through zero: tau_c v / sqrt(v^2 + eps^2)."""
@@ -65,7 +71,7 @@ def motion(plant, y, q, q_rate, tau_e, tau_ms, load_l, load_e):
     spring = leaf(deflection, theta_ms)
     tau_s = plant.spring_constant * spring.torque
     tau_back = tau_s if plant.paper_back_torque != 0.0 else plant.spring_constant * spring.back
-    friction = plant.motor_damping * true_omega_e + dry_friction(plant, true_omega_e)
+    friction = plant.motor_damping * omega_e + dry_friction(plant, true_omega_e)  # the damping of q' is in q
     a_l = (tau_s - plant.link_damping * omega_l - load_l) * plant.per_link_inertia
     a_e = (tau_e - tau_s - friction - load_e) * plant.per_motor_inertia
     a_ms = (tau_ms - plant.stiffness_damping * omega_ms - tau_back) * plant.per_stiffness_inertia
@@ -88,14 +94,19 @@ class LagShares(NamedTuple):
     left: float  # share of the gap that is left at the step's end
 
 
-def lag_shares(lag_s: float, inertia: float, step_s: float) -> LagShares:
-    """Return q and q' of q'' = exp(-t / lag) / J_e at the instants of a step of `step_s` [s]."""
+def lag_shares(lag_s: float, inertia: float, damping: float, step_s: float) -> LagShares:
+    """Return q and q' of J_e q'' + b_e q' = exp(-t / lag), q(0) = q'(0) = 0, at the instants of a step of `step_s` [s]."""
     if lag_s == 0.0:
         return LagShares._make([0.0] * len(LagShares._fields))
+    slow, fast = max(damping / inertia, 1e-9), 1.0 / lag_s
+    if abs(fast - slow) < 1e-6 * fast:
+        fast *= 1.0 + 1e-6  # the formula divides by their difference
     times = [c * step_s for c in INSTANTS[1:]]
-    grown = [-math.expm1(-time / lag_s) for time in times]
-    shift = [lag_s * (time - lag_s * share) / inertia for time, share in zip(times, grown, strict=True)]
-    rate = [lag_s * share / inertia for share in grown]
+    slow_part = [-math.expm1(-slow * time) for time in times]
+    fast_part = [-math.expm1(-fast * time) for time in times]
+    scale = 1.0 / (inertia * (fast - slow))
+    shift = [scale * (a / slow - b / fast) for a, b in zip(slow_part, fast_part, strict=True)]
+    rate = [scale * (b - a) for a, b in zip(slow_part, fast_part, strict=True)]
     return LagShares._make([*shift, *rate, math.exp(-step_s / lag_s)])
 
 
@@ -124,21 +135,41 @@ def dormand_prince_step(plant, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, h):
 
 
 @inlined
-def advance_plant(plant, whole_lag, fine_lag, state, tau_e, tau_ms, link_terms, motor_terms, time, sample_time_s):
+def steps_of_period(plant, state, tau_e, sample_time_s):
+    """Return how finely a period is to be integrated: 0 = in one step, 1 = finely, 2 = most finely.
+
+    Only dry friction near standstill asks for more than one step. It turns over within a few times its smoothing velocity,
+    so what counts is how much of that the motor passes in one period.
+    """
+    if plant.coulomb_friction == 0.0:
+        return 0
+    tau_s = plant.spring_constant * leaf(state.theta_e - state.theta_l, state.theta_ms).torque
+    force = abs(tau_e - tau_s) + plant.coulomb_friction + abs(state.motor_torque - tau_e)
+    passed = force * plant.per_motor_inertia * sample_time_s
+    if abs(state.omega_e) > 10.0 * plant.friction_velocity + passed:
+        return 0
+    return 2 if passed > SHARP_TURN * plant.friction_velocity else 1
+
+
+@inlined
+def advance_plant(plant, lags, state, tau_e, tau_ms, link_terms, motor_terms, time, sample_time_s):
     """Return the state one sample period after `time` [s], with the torques [N m] held by the drives, and both loads at `time`.
 
-    `whole_lag`, `fine_lag` are the LagShares of a whole period and of one of its substeps, which a sharp friction near
-    standstill asks for. The end stops of the stiffness axis are inelastic.
+    `lags` are the LagShares of a step, for each of the three finenesses. The end stops of the stiffness axis are inelastic.
     """
     y = (state.theta_l, state.theta_e, state.theta_ms, state.omega_l, state.omega_e, state.omega_ms)
     gap = state.motor_torque - tau_e
-    whole = plant.coulomb_friction == 0.0 or abs(state.omega_e) > 10.0 * plant.friction_velocity
-    steps, lag = (1, whole_lag) if whole else (int(plant.substeps), fine_lag)
+    fineness = steps_of_period(plant, state, tau_e, sample_time_s)
+    steps, lag = 1, lags[0]
+    if fineness == 1:
+        steps, lag = int(plant.substeps), lags[1]
+    elif fineness == 2:
+        steps, lag = int(plant.substeps) * FINEST, lags[2]
     h = sample_time_s / steps
     load_l = load_e = 0.0
     for step in range(steps):
-        loads_l = loads_of_step(link_terms, time, time + step * h, h, whole)
-        loads_e = loads_of_step(motor_terms, time, time + step * h, h, whole)
+        loads_l = loads_of_step(link_terms, time, time + step * h, h, steps == 1)
+        loads_e = loads_of_step(motor_terms, time, time + step * h, h, steps == 1)
         if step == 0:
             load_l, load_e = loads_l[0], loads_e[0]
         y = dormand_prince_step(plant, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, h)

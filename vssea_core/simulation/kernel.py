@@ -114,7 +114,7 @@ def run(
 
         heat = warmed(drives, heat, applied_e, applied_ms)
         following, load_l, load_e = advance_plant(
-            plant, rig.whole_lag, rig.fine_lag, now, applied_e, applied_ms, link_terms, motor_terms, time, period
+            plant, rig.lags, now, applied_e, applied_ms, link_terms, motor_terms, time, period
         )
         deflection = now.theta_e - now.theta_l
         spring = leaf(deflection, now.theta_ms)

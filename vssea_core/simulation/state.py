@@ -9,7 +9,7 @@ from numba.np.unsafe.ndarray import to_fixed_tuple
 from numpy.typing import NDArray
 
 from vssea_core.actuator.drive import Drives, Heat
-from vssea_core.actuator.dynamics import LagShares, Plant, PlantState, lag_shares
+from vssea_core.actuator.dynamics import FINEST, LagShares, Plant, PlantState, lag_shares
 from vssea_core.actuator.parameters import Actuator, Timing
 from vssea_core.actuator.sensors import Encoders, encoders
 from vssea_core.actuator.spring import equilibrium_deflection, stiffness_motor_position
@@ -35,8 +35,7 @@ class Rig(NamedTuple):
     """The simulated rig as the kernel takes it: true plant, drives, encoders and timing."""
 
     plant: Plant
-    whole_lag: LagShares
-    fine_lag: LagShares
+    lags: tuple[LagShares, LagShares, LagShares]  # for each fineness of integration
     drives: Drives
     encoders: Encoders
     sample_time_s: float
@@ -95,12 +94,14 @@ def drive_numbers(actuator: Actuator, sample_time_s: float) -> Drives:
 
 def rig_numbers(plant: Plant, drives: Drives, resolution: Encoders, lag_s: float, timing: Timing) -> Numbers:
     """Return a simulated rig as one array, in the order of Rig."""
-    period, inertia = timing.sample_time_s, 1.0 / plant.per_motor_inertia
+    period = timing.sample_time_s
+    motor = 1.0 / plant.per_motor_inertia, plant.motor_damping
     return np.array(
         [
             *plant,
-            *lag_shares(lag_s, inertia, period),
-            *lag_shares(lag_s, inertia, period / plant.substeps),
+            *lag_shares(lag_s, *motor, period),
+            *lag_shares(lag_s, *motor, period / plant.substeps),
+            *lag_shares(lag_s, *motor, period / (plant.substeps * FINEST)),
             *drives,
             *resolution,
             period,
@@ -124,7 +125,8 @@ def rig_row(scenario: Scenario) -> Numbers:
 PLANT_SIZE, LAG_SIZE = len(Plant._fields), len(LagShares._fields)
 DRIVES_SIZE, ENCODERS_SIZE = len(Drives._fields), len(Encoders._fields)
 _FINE_AT = PLANT_SIZE + LAG_SIZE
-_DRIVES_AT = _FINE_AT + LAG_SIZE
+_FINEST_AT = _FINE_AT + LAG_SIZE
+_DRIVES_AT = _FINEST_AT + LAG_SIZE
 _ENCODERS_AT = _DRIVES_AT + DRIVES_SIZE
 _TIMING_AT = _ENCODERS_AT + ENCODERS_SIZE
 
@@ -134,8 +136,11 @@ def loaded_rig(row):
     """Return the Rig of an array made by `rig_row`."""
     return Rig(
         Plant(*to_fixed_tuple(row[:PLANT_SIZE], PLANT_SIZE)),
-        LagShares(*to_fixed_tuple(row[PLANT_SIZE:_FINE_AT], LAG_SIZE)),
-        LagShares(*to_fixed_tuple(row[_FINE_AT:_DRIVES_AT], LAG_SIZE)),
+        (
+            LagShares(*to_fixed_tuple(row[PLANT_SIZE:_FINE_AT], LAG_SIZE)),
+            LagShares(*to_fixed_tuple(row[_FINE_AT:_FINEST_AT], LAG_SIZE)),
+            LagShares(*to_fixed_tuple(row[_FINEST_AT:_DRIVES_AT], LAG_SIZE)),
+        ),
         Drives(*to_fixed_tuple(row[_DRIVES_AT:_ENCODERS_AT], DRIVES_SIZE)),
         Encoders(*to_fixed_tuple(row[_ENCODERS_AT:_TIMING_AT], ENCODERS_SIZE)),
         row[_TIMING_AT],

@@ -1,0 +1,85 @@
+"""What the documents list is what the code has: settings, commands, routes, messages, channels and limits."""
+
+import json
+import re
+from pathlib import Path
+
+import httpx
+import pytest
+from typer.testing import CliRunner
+
+from backend.cli import app
+from backend.settings import Settings
+from vssea_core.channels import CHANNELS, LIMITS
+
+DOCS = Path(__file__).parents[2] / "docs"
+PROTOCOL = (DOCS / "protocol.md").read_text("utf-8")
+
+
+def table(text: str, heading: str) -> list[list[str]]:
+    """The cells of the first table after `heading`, without its head."""
+    lines = iter(text[text.index(heading) :].splitlines()[1:])
+    rows = []
+    for line in lines:
+        if line.startswith("|"):
+            rows.append([cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]])
+        elif rows:
+            break
+    return rows[2:]
+
+
+def quoted(text: str) -> set[str]:
+    return set(re.findall(r"`([^`]+)`", text))
+
+
+def test_every_setting_is_listed_with_its_option_default_and_meaning() -> None:
+    rows = {row[0].strip("`"): row[1:] for row in table((DOCS / "settings.md").read_text("utf-8"), "# Settings")}
+    assert list(rows) == [f"VSSEA_{name.upper()}" for name in Settings.model_fields]
+    options = CliRunner().invoke(app, ["serve", "--help"], env={"COLUMNS": "200", "NO_COLOR": "1"}).stdout
+    for name, field in Settings.model_fields.items():
+        option, default, meaning = rows[f"VSSEA_{name.upper()}"]
+        assert (option.strip("`") or "no option") == (f"--{name}" if f"--{name} " in options else "no option")
+        assert meaning.startswith(str(field.description))
+        if name not in ("data_dir", "token"):
+            shown = json.loads(default.strip("`")) if name not in ("host", "scenario") else default.strip("`")
+            assert shown == (list(field.default) if isinstance(field.default, tuple) else field.default)
+
+
+def test_every_command_is_in_the_protocol(http: httpx.Client) -> None:
+    listed = [name for row in table(PROTOCOL, "## Commands") for name in sorted(quoted(row[0]))]
+    assert sorted(listed) == sorted(http.get("/api/schema").json()["commands"])
+
+
+def test_every_route_is_in_the_protocol(http: httpx.Client) -> None:
+    served = {
+        f"{method.upper()} {path}"
+        for path, methods in http.get("/openapi.json").json()["paths"].items()
+        for method in methods
+    }
+    listed = {entry.split("?")[0] for row in table(PROTOCOL, "## REST") for entry in quoted(row[0])}
+    assert listed == served
+
+
+@pytest.mark.parametrize("name", ["hello", "state", "document", "event", "missed", "reply"])
+def test_every_message_is_in_the_protocol(name: str) -> None:
+    assert f'{{"type": "{name}"' in PROTOCOL
+
+
+def test_every_parameter_of_a_query_is_in_the_protocol(http: httpx.Client) -> None:
+    for path, methods in http.get("/openapi.json").json()["paths"].items():
+        for details in methods.values():
+            for parameter in details.get("parameters", []):
+                assert parameter["name"] in PROTOCOL, f"{path}: {parameter['name']}"
+
+
+def test_every_channel_and_limit_is_listed_in_order() -> None:
+    text = (DOCS / "channels.md").read_text("utf-8")
+    rows = table(text, "# Recorded channels")
+    assert [[row[0], *(cell.strip("`") for cell in row[1:])] for row in rows] == [
+        [str(number), channel.name, channel.symbol, channel.unit, channel.label, channel.group]
+        for number, channel in enumerate(CHANNELS)
+    ]
+    limits = table(text, "## Limits")
+    assert [[cell.strip("`") for cell in row] for row in limits] == [
+        [str(limit.bit), limit.name, limit.sentence] for limit in LIMITS
+    ]
