@@ -49,7 +49,7 @@ class Server:
         """Return the processor time so far of the web process and of each child, by name of its entry."""
         found = {"web": _processor_seconds(self.process.pid)}
         for child in _children(self.process.pid):
-            found[f"child {child}"] = _processor_seconds(child)
+            found[Path(f"/proc/{child}/comm").read_text().strip()] = _processor_seconds(child)
         return found
 
 
@@ -158,4 +158,5 @@ def _processor_seconds(pid: int) -> float:
 
 
 def _children(pid: int) -> list[int]:
-    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+    tasks = Path(f"/proc/{pid}/task").iterdir()  # a child belongs to the thread that started it
+    return [int(child) for task in tasks for child in (task / "children").read_text().split()]
