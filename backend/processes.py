@@ -19,10 +19,15 @@ def started(name: str, entry: str, *arguments: Any) -> BaseProcess:
     return process
 
 
+def name_this_process(name: str) -> None:
+    """Give this process the name that `top` shows, where the system can."""
+    with suppress(OSError):
+        Path("/proc/self/comm").write_text(name)
+
+
 def _enter(name: str, entry: str, *arguments: Any) -> None:
     for variable in ONE_THREAD:  # threads of their own make 5x5 matrices wait for a busy core
         os.environ.setdefault(variable, "1")
-    with suppress(OSError):
-        Path("/proc/self/comm").write_text(name)  # as top shows it, on Linux
+    name_this_process(name)
     module, function = entry.split(":")
     getattr(importlib.import_module(module), function)(*arguments)

@@ -94,7 +94,9 @@ def open_page(port: int) -> Iterator[None]:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as browser:
-        chromium = browser.chromium.launch(executable_path=os.environ.get("CHROMIUM", "/usr/bin/chromium"), args=CHROMIUM_FLAGS)
+        chromium = browser.chromium.launch(
+            executable_path=os.environ.get("CHROMIUM", "/usr/bin/chromium"), args=CHROMIUM_FLAGS
+        )
         page = chromium.new_page(viewport={"width": 1366, "height": 768})
         page.goto(f"http://127.0.0.1:{port}/", wait_until="load", timeout=60_000)
         yield

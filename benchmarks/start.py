@@ -34,7 +34,9 @@ def measure(page: Page, cache: str) -> tuple[float, float]:
         environment = os.environ | {"VSSEA_DATA_DIR": data, "VSSEA_CACHE_DIR": cache}
         command = [sys.executable, "-m", "backend.cli", "serve", "--port", str(port)]
         started = time.perf_counter()
-        process = subprocess.Popen(command, env=environment, cwd=Path(__file__).parent.parent, stdout=subprocess.DEVNULL)
+        process = subprocess.Popen(
+            command, env=environment, cwd=Path(__file__).parent.parent, stdout=subprocess.DEVNULL
+        )
         try:
             while not answering(port):
                 time.sleep(0.05)

@@ -13,7 +13,9 @@ IMAGE = Path(__file__).parent / "images" / "tune.png"
 def main(address: str) -> None:
     """Open the page, let it run, and save what it looks like."""
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=os.environ.get("CHROMIUM", "/usr/bin/chromium"), args=FLAGS)
+        browser = playwright.chromium.launch(
+            executable_path=os.environ.get("CHROMIUM", "/usr/bin/chromium"), args=FLAGS
+        )
         page = browser.new_page(viewport={"width": 1366, "height": 768}, color_scheme="dark", bypass_csp=True)
         page.goto(address, wait_until="load", timeout=60_000)
         page.wait_for_function("() => window.vssea && window.vssea.latest('time') > 12", timeout=60_000)

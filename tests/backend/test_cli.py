@@ -56,7 +56,12 @@ def test_the_trajectory_is_written_in_each_form(file: Path, every: int) -> None:
     assert np.array_equal(np.concatenate([frame.values for frame in frames], axis=1), rows.T.astype("f4"))
 
 
-UNSTABLE = '{"timing": {"compute_delay_samples": 1}, "tuning": {"controller": {"kind": "state_feedback", "natural_frequency": 500}}}'
+UNSTABLE = json.dumps(
+    {
+        "timing": {"compute_delay_samples": 1},
+        "tuning": {"controller": {"kind": "state_feedback", "natural_frequency": 500.0}},
+    }
+)
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,8 @@ from vssea_core.actuator.parameters import Actuator, EquilibriumMotor
 from vssea_core.control.tuning import StateFeedback
 from vssea_core.scenario import Scenario
 from vssea_core.scenarios import NOMINAL, REALISTIC
-from vssea_core.signals.documents import ConstantStiffness, MoveReference, SineReference
 from vssea_core.signals.disturbances import load_at
+from vssea_core.signals.documents import ConstantStiffness, MoveReference, SineReference
 from vssea_core.signals.references import change_reference
 from vssea_core.simulation.kernel import run
 from vssea_core.simulation.run import simulate

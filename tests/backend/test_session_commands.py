@@ -55,7 +55,7 @@ def test_a_whole_tuning_replaces_the_old_one(session: httpx.Client) -> None:
     ("command", "part", "path", "first", "then", "kept"),
     [
         ("set_reference", "reference", "", {"kind": "move", "target": 0.7, "start_s": 0.1}, "sine", {}),
-        ("set_reference", "reference", "", {"kind": "move", "target": 0.7, "start_s": 0.1}, "step", {"target": 0.7, "start_s": 0.1}),
+        ("set_reference", "reference", "", {"kind": "move", "target": 0.7}, "step", {"target": 0.7}),
         ("set_reference", "reference", "", {"kind": "step", "dwell_s": 3.0}, "move", {"dwell_s": 3.0}),
         ("set_stiffness", "stiffness_reference", "", {"kind": "constant", "stiffness": 300.0}, "move", {"stiffness": 300.0}),
         ("set_stiffness", "stiffness_reference", "", {"kind": "move", "stiffness": 300.0}, "constant", {"stiffness": 300.0}),
