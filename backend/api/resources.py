@@ -52,7 +52,7 @@ def resources(session: Session, pool: Pool, store: PresetStore, folder: str) -> 
     @router.get("/health")
     def health() -> Document:
         """Say that the server answers, and the session's state."""
-        return {"status": "ok", "version": __version__, "session": session.state}
+        return {"status": "ok", "version": __version__, "session": session.status.state}
 
     @router.get("/schema")
     def schema() -> Document:

@@ -14,7 +14,7 @@ MCL_CURRENT_AND_FUTURE = 3
 PRIORITY = 20
 
 
-def run_control_process(ring_name: str, flag_name: str, pipe: Connection) -> None:
+def run_control_process(ring_name: str, flag_name: str, epoch: int, pipe: Connection) -> None:
     """Turn the loop of one session until `pipe` closes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is the web process's to handle
     from filelock import FileLock
@@ -32,6 +32,7 @@ def run_control_process(ring_name: str, flag_name: str, pipe: Connection) -> Non
 
     ring, flag = RingWriter(ring_name), StopFlag(flag_name)
     loop = ControlLoop(ring, flag, pipe)
+    loop.epoch = epoch
     gc.collect()
     gc.freeze()
     gc.disable()

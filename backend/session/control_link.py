@@ -25,12 +25,15 @@ class ControlLink:
         self._process: BaseProcess | None = None
         self._ready: asyncio.Future[None] | None = None
 
-    async def start(self, ring_name: str, flag_name: str) -> None:
-        """Start the process and return when its kernels are compiled. Raises Problem if it ends or takes too long."""
+    async def start(self, ring_name: str, flag_name: str, epoch: int) -> None:
+        """Start the process and return when its kernels are compiled; its first run is the one after `epoch`.
+
+        Raises Problem if it ends or takes too long.
+        """
         await self.stop()  # never two writers
         self._ready = asyncio.get_running_loop().create_future()
         self._pipe, theirs = CONTEXT.Pipe()
-        arguments = (ring_name, flag_name, theirs)
+        arguments = (ring_name, flag_name, epoch, theirs)
         self._process = await asyncio.to_thread(started, "vssea control", ENTRY, *arguments)
         theirs.close()
         asyncio.get_running_loop().add_reader(self._pipe.fileno(), self._receive)

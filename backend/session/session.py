@@ -22,11 +22,11 @@ from backend.session.fault_snapshot import save_fault_snapshot
 from backend.session.health import Health
 from backend.session.limit_watch import LimitWatch
 from backend.session.notes import ChangeNotes, Note
-from backend.session.sentences import change_words, state_sentence
+from backend.session.sentences import change_words
+from backend.session.status import Status
 from backend.settings import Settings
-from backend.telemetry.ring import EPOCH, Ring, RingReader
+from backend.telemetry.ring import Ring, RingReader
 from backend.telemetry.stop_flag import StopFlag
-from vssea_core.channels import INDEX
 from vssea_core.control.tuning import Tuning
 from vssea_core.scenario import Scenario
 from vssea_core.scenarios import SCENARIOS
@@ -49,12 +49,7 @@ class Session:
         self._settings, self._pool, self._store = settings, pool, store
         self.scenario: Scenario = SCENARIOS[settings.scenario]
         self.preset: str | None = None
-        self.tuning_id = 0
-        self.state: messages.State = "starting"
-        self._reason: str | None = None
-        self._stopped_by: str | None = None
-        self.epoch, self._time_s, self._pace = 0, 0.0, 1.0
-        self._changed_at_s = 0.0  # session time of the last change of state
+        self.status = Status()
         self._segment, self._flag = Ring(), StopFlag()
         self.ring_name = self._segment.name
         self.run_id = uuid.uuid4().hex
@@ -111,7 +106,7 @@ class Session:
         if last is not None:
             self.scenario, self.preset = last.scenario, last.preset
         try:
-            await self._link.start(self.ring_name, self._flag.name)
+            await self._link.start(self.ring_name, self._flag.name, self.status.epoch)
         except Problem:
             return  # its end was told, and Reset starts it anew
         try:
@@ -155,31 +150,16 @@ class Session:
         self._tasks.discard(task)
         if not task.cancelled() and task.exception() is not None:
             logger.error("a task of the session failed", exc_info=task.exception())
-            self._reason = f"{task.exception()}. Restart the server; its log has the details."
-            self.state = "fault"
+            self.status.fail(f"{task.exception()}. Restart the server; its log has the details.")
             self._tell_state()
 
     # ---- what pages see
 
     def snapshot(self) -> Message:
         """Return the state in words and figures, as docs/protocol.md has it."""
-        period_s = self.scenario.timing.sample_time_s
-        figures = self._health.figures(period_s, self.epoch)
-        newest = self.ring.latest()
-        if newest is not None and newest[EPOCH] == self.epoch:
-            self._time_s = max(self._time_s, float(newest[INDEX["time"]]))
-        return {
-            "state": self.state,
-            "sentence": state_sentence(self.state, self._reason, self._changed_at_s, self._stopped_by, self.scenario),
-            "reason": self._reason,
-            "rig": {"kind": "simulated", "label": "simulated rig"},
-            "time_s": self._time_s,
-            "epoch": self.epoch,
-            "tuning_id": self.tuning_id,
-            "pace": {"asked": self._pace, "achieved": figures.pop("achieved")},
-            "pages": len(self.listeners),
-            **figures,
-        }
+        self.status.follow(self.ring.latest())
+        figures = self._health.figures(self.scenario.timing.sample_time_s, self.status.epoch)
+        return self.status.snapshot(self.scenario, figures, len(self.listeners))
 
     def document(self, by: str = "server") -> Message:
         """Return the live scenario and its preset."""
@@ -189,7 +169,7 @@ class Session:
             preset = saved and saved.document()
         return {
             "type": "document", "scenario": self.scenario.model_dump(mode="json"), "preset": preset,
-            "tuning_id": self.tuning_id, "by": by,
+            "tuning_id": self.status.tuning_id, "by": by,
         }  # fmt: skip
 
     def _tell(self, message: Message) -> None:
@@ -206,23 +186,21 @@ class Session:
         words = [change_words(self.scenario, f"{part}.{path}", *pair) for path, pair in note.changes.items()]
         self.log.add(EVENT_KINDS[part], ", ".join(words), by, note.epoch, note.time_s)
 
-    def _note(self, kind: Kind, text: str, by: str) -> None:
-        self.log.add(kind, text, by, self.epoch, self._time_s)
+    def _note(self, kind: Kind, text: str, by: str, severity: Severity = "info") -> None:
+        self.log.add(kind, text, by, self.status.epoch, self.status.time_s, severity)
 
     # ---- reports of the control process
 
     def _on_report(self, report: messages.Report) -> None:
         if not isinstance(report, messages.Changed):
             return
-        self.state, self._reason = report.state, report.reason
-        self.epoch, self._time_s = report.epoch, report.time_s
-        self._changed_at_s = report.time_s
-        sentence = state_sentence(self.state, self._reason, self._changed_at_s, self._stopped_by, self.scenario)
-        severity: Severity = "fault" if self.state == "fault" else "warning" if self.state == "stopped" else "info"
-        by = self._stopped_by or "server" if self.state == "stopped" else "session"
-        self.log.add("fault" if self.state == "fault" else "state", sentence, by, self.epoch, self._time_s, severity)
+        self.status.take(report)
+        state = self.status.state
+        severity: Severity = "fault" if state == "fault" else "warning" if state == "stopped" else "info"
+        by = self.status.stopped_by or "server" if state == "stopped" else "session"
+        self._note("fault" if state == "fault" else "state", self.status.sentence(self.scenario), by, severity)
         self._tell_state()
-        if self.state == "fault":
+        if state == "fault":
             self._spawn(self._keep_fault())
 
     async def _keep_fault(self) -> None:
@@ -232,13 +210,13 @@ class Session:
             self._settings.data_dir,
             self.ring.last(round(2.0 / period_s)),
             self.scenario,
-            self._reason,
+            self.status.reason,
         )
         self._note("fault", f"The last 2 s before the fault are kept in {file}", "server")
 
     def _on_lost(self) -> None:
-        self.state, self._reason = "fault", "the control process ended unexpectedly. Press Reset to start it anew."
-        self.log.add("fault", f"Fault: {self._reason}", "server", self.epoch, self._time_s, "fault")
+        self.status.fail("the control process ended unexpectedly. Press Reset to start it anew.")
+        self._note("fault", self.status.sentence(self.scenario), "server", "fault")
         self._tell_state()
 
     # ---- commands
@@ -263,8 +241,8 @@ class Session:
     async def stop(self, _: Nothing, by: str) -> Message:
         """Motor torque off at once, stiffness held. Passes every queue: it only writes the flag."""
         self._flag.raise_()
-        if self.state not in ("stopped", "fault"):
-            self._stopped_by = by
+        if self.status.state not in ("stopped", "fault"):
+            self.status.stopped_by = by
         return {}
 
     async def tune(self, asked: Changes, by: str) -> Message:
@@ -302,19 +280,19 @@ class Session:
             if found:
                 done = await apply(new)
                 self.scenario = new
-                self._notes.add(part, by, found, self.epoch, done.time_s)
+                self._notes.add(part, by, found, self.status.epoch, done.time_s)
                 self._tell(self.document(by))
                 self._save_soon()
             return {
-                "tuning_id": self.tuning_id,
+                "tuning_id": self.status.tuning_id,
                 "applied": {path: after for path, (_, after) in found.items()},
                 "notes": [],
             }
 
     async def _install(self, new: Scenario) -> messages.Done:
         prepared = await self._prepared(new)
-        done = await self._link.command(messages.Install(new.tuning, prepared, self.tuning_id + 1))
-        self.tuning_id += 1
+        done = await self._link.command(messages.Install(new.tuning, prepared, self.status.tuning_id + 1))
+        self.status.tuning_id += 1
         return done
 
     async def _prepared(self, scenario: Scenario) -> Any:
@@ -339,13 +317,13 @@ class Session:
             self._tell(self.document(by))
             self._save_soon()
         self._note("scenario", f"scenario {scenario.name} loaded", by)
-        return {"tuning_id": self.tuning_id}
+        return {"tuning_id": self.status.tuning_id}
 
     async def _load(self, scenario: Scenario) -> None:
         prepared = await self._prepared(scenario)
-        run = self.state in ("starting", "running")
-        await self._link.command(messages.Load(scenario, prepared, self.tuning_id + 1, run))
-        self.tuning_id += 1
+        run = self.status.state in ("starting", "running")
+        await self._link.command(messages.Load(scenario, prepared, self.status.tuning_id + 1, run))
+        self.status.tuning_id += 1
         self.scenario = scenario
         self._tell(self.document())
 
@@ -368,18 +346,18 @@ class Session:
         """Back to t = 0; the only way out of a stop or a fault."""
         async with self._turn:
             if self._link.ended:
-                await self._link.start(self.ring_name, self._flag.name)
+                await self._link.start(self.ring_name, self._flag.name, self.status.epoch)
                 await self._load(self.scenario)
             else:
                 await self._link.command(messages.Reset())
-        self._stopped_by = None
+        self.status.stopped_by = None
         self._note("state", "reset to t = 0", by)
         return {}
 
     async def set_pace(self, asked: Pace, by: str) -> Message:
         """Ask for another real-time factor."""
         await self._link.command(messages.SetPace(asked.factor))
-        self._pace = asked.factor
+        self.status.pace = asked.factor
         self._note("state", f"real-time factor {asked.factor:g}", by)
         self._tell_state()
         return {}
