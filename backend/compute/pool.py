@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any
 
@@ -27,6 +28,7 @@ class Worker:
         self._name, self._priority, self._entry = name, priority, entry
         self._turn = asyncio.Lock()
         self._process: BaseProcess | None = None
+        self._pipe: Connection
 
     async def start(self) -> None:
         """Start the process and wait until its kernels are compiled."""
@@ -44,8 +46,10 @@ class Worker:
         await self._end()
 
     async def _ready(self) -> None:
-        if self._process is not None and self._process.is_alive():
+        # An idle worker says nothing: a readable pipe has lost its other end.
+        if self._process is not None and self._process.is_alive() and not self._pipe.poll():
             return
+        await self._end()
         self._pipe, theirs = CONTEXT.Pipe()
         self._process = await asyncio.to_thread(started, self._name, self._entry, theirs, self._priority)
         theirs.close()

@@ -31,13 +31,13 @@ def noise() -> list[Line]:
     """17-bit link encoder, 5.6 N m of dry friction that the model lacks, no lag and no delay, 74 N m."""
     lines = []
     rig = {"actuator": Actuator(motor=unlimited_motor(coulomb_friction=5.6)), "sensors": REALISTIC.sensors}
-    for words, k, observer, page in CASES:
+    for words, k, observer, expected in CASES:
         run = simulate(sine_scenario(Tuning(observer=observer), k, **rig))
         error, chatter = error_and_chatter(run)
         share = metrics(run.rows[4000:])["saturated"]
         measured = f"{chatter:.3g} N m, {mrad(error)}, {share:.0f} % saturated"
         how = PRODUCT + ("; law and observer on the same filtered velocities" if observer.kind == "velocity" else "")
-        lines.append(Line(f"k {k:g}, {words}: chatter, RMS error", page, measured, how))
+        lines.append(Line(f"k {k:g}, {words}: chatter, RMS error", expected, measured, how))
     return lines
 
 

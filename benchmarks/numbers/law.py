@@ -30,10 +30,10 @@ UNLIMITED = 1e4  # N m, the largest peak torque the document permits
 def moving_stiffness() -> list[Line]:
     """k 1000 -> 20 in 0.5 s under 5 N m, with fewer and fewer of the theta_ms terms."""
     lines = []
-    for terms, page, words in (("none", "330 / 1572", "no theta_ms term"), ("rate", "74 / 800", "tau_s' only")):
+    for terms, expected, words in (("none", "330 / 1572", "no theta_ms term"), ("rate", "74 / 800", "tau_s' only")):
         peaks = [_reference_move(pole, terms) for pole in (20.0, 8.0)]
         how = f"by the reference with stiffness_terms={terms!r}, stiffness filter 60 rad/s"
-        lines.append(Line(f"k 1000 to 20, {words}, p 20 / p 8: peak error", f"{page} mrad", _pair(peaks), how))
+        lines.append(Line(f"k 1000 to 20, {words}, p 20 / p 8: peak error", f"{expected} mrad", _pair(peaks), how))
     peaks = [_reference_move(pole, "all") for pole in (20.0, 8.0)]
     how = "by the reference, stiffness filter 60 rad/s, no slew limit"
     lines.append(Line("k 1000 to 20, every term, p 20 / p 8: peak error", "0.7 / 12 mrad", _pair(peaks), how))
@@ -123,7 +123,7 @@ def literal_torque() -> list[Line]:
         found.append((rms(np.diff(torque)), rms(error)))
     chatter, errors = (" / ".join(f"{scale * pair[i]:.3g}" for pair in found) for i, scale in ((0, 1.0), (1, 1e3)))
     lines.append(Line("previous u, 74 N m, p 20, k 50 / 200: chatter", "139 N m a sample", f"{chatter} N m", how))
-    how += "; the page does not state its case"
+    how += "; its case is not stated"
     lines.append(Line("previous u, 74 N m, p 20, k 50 / 200: RMS error", "0.6-25 mrad", f"{errors} mrad", how))
 
     scenario = Scenario(
@@ -143,7 +143,7 @@ def literal_torque() -> list[Line]:
 def sliding_mode() -> list[Line]:
     """Switching: error and chatter. The sgn start saturates at 74 N m, so it is also given from 5 s on."""
     lines = []
-    for words, law, page in (
+    for words, law, expected in (
         ("sgn, rho 500", SlidingMode(switch="sgn", switching_gain=500.0), "0.03 mrad, 1.6 N m"),
         ("sgn, rho 5e4", SlidingMode(switch="sgn", switching_gain=5e4), "137 N m"),
         ("layer, rho 5e4, phi 500", SlidingMode(), "0.06 mrad, 0.01 N m"),
@@ -154,7 +154,7 @@ def sliding_mode() -> list[Line]:
             error, chatter = error_and_chatter(run, from_s)
             found.append(f"{mrad(error)}, {chatter:.2g} N m")
         how = f"{PRODUCT}: 74 N m from 4 s; from 5 s; without torque limit"
-        lines.append(Line(f"sliding mode, {words}: RMS error, chatter", page, "; ".join(found), how))
+        lines.append(Line(f"sliding mode, {words}: RMS error, chatter", expected, "; ".join(found), how))
     return lines
 
 

@@ -91,7 +91,7 @@ def kicks() -> list[Line]:
         demand = plain.advance(1)["motor_torque_demand"][0]
         kept = max(kept, abs(bumpless.advance(1, changed)["motor_torque_demand"][0] - demand))
         largest = max(largest, abs(held.advance(1, changed)["motor_torque_demand"][0] - demand))
-    how = "nominal, largest over 4 to 8 s; the page does not state its instant and bandwidths"
+    how = "nominal, largest over 4 to 8 s; its instant and bandwidths are not stated"
     scenario = Scenario(
         stiffness_reference=ConstantStiffness(stiffness=50.0),
         reference=StepReference(origin=0.0, target=0.0),

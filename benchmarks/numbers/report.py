@@ -1,4 +1,4 @@
-"""Print every number of the theory page beside what this code gives."""
+"""Print every number of the theory that can be checked, the expected one beside what this code gives."""
 
 from rich.console import Console
 from rich.table import Table
@@ -17,7 +17,7 @@ def main() -> None:
     console = Console(width=200, soft_wrap=False)
     console.print(CONDITIONS)
     for title, module in (("Section 2", law), ("Section 3", observer), ("Section 5", encoders)):
-        table = Table("what", "page", "measured", "how", title=title, title_justify="left", show_lines=False)
+        table = Table("what", "expected", "measured", "how", title=title, title_justify="left", show_lines=False)
         for section in module.SECTIONS:
             for line in section():
                 table.add_row(*line)

@@ -1,4 +1,4 @@
-"""The setting that the page's numbers share: no fade-in, no limit but the peak torque, sine of 0.5 rad at 0.25 Hz."""
+"""The setting that the expected numbers share: no fade-in, no limit but the peak torque, sine of 0.5 rad at 0.25 Hz."""
 
 import numpy as np
 

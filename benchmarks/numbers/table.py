@@ -1,4 +1,4 @@
-"""One measured number beside the page's, and the two measures that most of them are."""
+"""One measured number beside the expected one, and the two measures that most of them are."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -9,10 +9,10 @@ SETTLED_S = 4.0
 
 
 class Line(NamedTuple):
-    """What was measured, the page's value, ours, and by what code."""
+    """What was measured, the expected value, ours, and by what code."""
 
     what: str
-    page: str
+    expected: str
     measured: str
     how: str
 
