@@ -2,10 +2,15 @@
 
 import asyncio
 import json
-from concurrent.futures import ThreadPoolExecutor
+import multiprocessing
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import nullcontext
 
+import numpy as np
+
+from benchmarks.bare_loop import lateness_us
 from benchmarks.live_server import LivePage, Server, live_page, open_page, running_server
+from benchmarks.probed_server import PERCENTILES
 
 DURATION_S = 60.0
 
@@ -42,8 +47,17 @@ def measure(server: Server, page_open: bool) -> None:
     print(f"  scheduling: {'real-time' if report['real_time'] else 'best effort'}")
 
 
+def compare() -> None:
+    """Print what an empty loop gets from this machine."""
+    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as process:
+        late = process.submit(lateness_us, DURATION_S / 2).result()
+    percentiles = "   ".join(f"{label} {np.percentile(late, p):.1f}" for label, p in PERCENTILES.items())
+    print(f"an empty 1 kHz loop on this machine, {DURATION_S / 2:.0f} s, for comparison\n  lateness_us  {percentiles}")
+
+
 def main() -> None:
-    """Print both minutes."""
+    """Print both minutes, and an empty loop's."""
+    compare()
     with running_server(probed=True) as server:
         measure(server, page_open=False)
         measure(server, page_open=True)
