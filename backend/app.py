@@ -18,11 +18,15 @@ from backend.api.problems import add_problem_handlers
 from backend.api.resources import resources
 from backend.compute.pool import Pool
 from backend.presets.store import PresetStore
+from backend.processes import set_niceness
 from backend.scene.process import SceneProcess
 from backend.scene.relay import scene_routes
 from backend.session.session import Session
 from backend.settings import Settings
 from vssea_core import __version__
+
+WEB_NICENESS = -10
+"""STOP passes through this process, so it goes before other programs where the system allows it."""
 
 
 def create_app(settings: Settings) -> FastAPI:
@@ -35,6 +39,7 @@ def create_app(settings: Settings) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        set_niceness(WEB_NICENESS)
         session.start()
         if settings.scene:
             scene.start()

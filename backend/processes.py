@@ -19,6 +19,12 @@ def started(name: str, entry: str, *arguments: Any) -> BaseProcess:
     return process
 
 
+def set_niceness(niceness: int) -> None:
+    """Set this process's share of a busy processor, from -20 (most) to 19; more than the usual 0 needs privileges."""
+    with suppress(OSError, AttributeError):
+        os.setpriority(os.PRIO_PROCESS, 0, niceness)
+
+
 def name_this_process(name: str) -> None:
     """Give this process the name that `top` shows, where the system can."""
     with suppress(OSError):
@@ -29,5 +35,6 @@ def _enter(name: str, entry: str, *arguments: Any) -> None:
     for variable in ONE_THREAD:  # threads of their own make 5x5 matrices wait for a busy core
         os.environ.setdefault(variable, "1")
     name_this_process(name)
+    set_niceness(0)  # not what the web process may have
     module, function = entry.split(":")
     getattr(importlib.import_module(module), function)(*arguments)

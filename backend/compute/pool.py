@@ -24,8 +24,8 @@ class JobFailedError(RuntimeError):
 class Worker:
     """One worker process with a queue of its own."""
 
-    def __init__(self, name: str, priority: int = 10, entry: str = ENTRY) -> None:
-        self._name, self._priority, self._entry = name, priority, entry
+    def __init__(self, name: str, niceness: int = 10, entry: str = ENTRY) -> None:
+        self._name, self._niceness, self._entry = name, niceness, entry
         self._turn = asyncio.Lock()
         self._process: BaseProcess | None = None
         self._pipe: Connection
@@ -51,7 +51,7 @@ class Worker:
             return
         await self._end()
         self._pipe, theirs = CONTEXT.Pipe()
-        self._process = await asyncio.to_thread(started, self._name, self._entry, theirs, self._priority)
+        self._process = await asyncio.to_thread(started, self._name, self._entry, theirs, self._niceness)
         theirs.close()
         await self._answer(None, START_LIMIT_S)
 
@@ -99,8 +99,8 @@ class Pool:
     """A worker for the designs that live changes wait for, and one for simulations, so that neither waits for the other."""
 
     def __init__(self) -> None:
-        self.design = Worker("vssea design", priority=0)
-        self.simulation = Worker("vssea simulation", priority=10)
+        self.design = Worker("vssea design", niceness=0)
+        self.simulation = Worker("vssea simulation", niceness=10)
 
     async def stop(self) -> None:
         """End both."""

@@ -1,19 +1,19 @@
 """Entry of a worker process: jobs in, answers out, one at a time, over one pipe."""
 
-import os
 import signal
 import traceback
 from multiprocessing.connection import Connection
 from typing import Literal
 
+from backend.processes import set_niceness
+
 Outcome = tuple[Literal["ready", "done", "refused", "failed"], object]
 
 
-def run_worker(pipe: Connection, priority: int) -> None:
+def run_worker(pipe: Connection, niceness: int) -> None:
     """Answer jobs (name, arguments) until the pipe closes; compile the kernels before the first."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if hasattr(os, "nice"):
-        os.nice(priority)  # sums give way to the control loop and to STOP
+    set_niceness(niceness)  # sums give way to the control loop and to STOP
     from backend.compute import jobs
     from backend.compute.warm import warm_up
 

@@ -8,7 +8,6 @@ import asyncio
 import io
 import logging
 import multiprocessing
-import os
 import signal
 import sys
 import time
@@ -18,7 +17,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import TYPE_CHECKING, Final
 
-from backend.processes import name_this_process
+from backend.processes import name_this_process, set_niceness
 
 if TYPE_CHECKING:
     from backend.scene.actuator_scene import ScenePose
@@ -41,8 +40,7 @@ def run_scene(ring_name: str, port_sender: Connection) -> None:
     """Entry of the scene process: serve the scene and follow the ring until the keeper's end of the pipe closes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is the keeper's to handle
     name_this_process("vssea scene")
-    if hasattr(os, "nice"):
-        os.nice(5)  # pictures give way to the control loop
+    set_niceness(5)  # pictures give way to the control loop
     sys.stdout = io.StringIO()  # viser prints a banner, with an address that is not for visitors
     import viser
 
