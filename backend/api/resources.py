@@ -133,7 +133,7 @@ def resources(session: Session, pool: Pool, store: PresetStore, folder: str) -> 
             tuning = Tuning.model_validate_json(json.dumps(body["tuning"]))
         except ValidationError as error:
             raise from_validation(error, Tuning, "tuning") from error
-        return await session.save_tuning(checked, tuning, BY)
+        return await session.presets.save_tuning(checked, tuning, BY)
 
     @router.delete("/presets/{name}")
     async def delete(name: str) -> Document:

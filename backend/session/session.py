@@ -22,12 +22,12 @@ from backend.session.fault_snapshot import save_fault_snapshot
 from backend.session.health import Health
 from backend.session.limit_watch import LimitWatch
 from backend.session.notes import ChangeNotes, Note
+from backend.session.preset_commands import PresetCommands
 from backend.session.sentences import change_words
 from backend.session.status import Status
 from backend.settings import Settings
 from backend.telemetry.ring import Ring, RingReader
 from backend.telemetry.stop_flag import StopFlag
-from vssea_core.control.tuning import Tuning
 from vssea_core.scenario import Scenario
 from vssea_core.scenarios import SCENARIOS
 
@@ -63,6 +63,7 @@ class Session:
         self._turn = asyncio.Lock()
         self._tasks: set[asyncio.Task[None]] = set()
         self._save_timer: asyncio.TimerHandle | None = None
+        self.presets = PresetCommands(store, self)
         self._commands: dict[str, tuple[type[BaseModel], Callable[[Any, str], Awaitable[Message]]]] = {
             "tune": (Changes, self.tune),
             "set_reference": (Changes, self.set_reference),
@@ -75,9 +76,9 @@ class Session:
             "reset": (Nothing, self.reset),
             "set_pace": (Pace, self.set_pace),
             "stop": (Nothing, self.stop),
-            "save_preset": (Named, self.save_preset),
-            "apply_preset": (Named, self.apply_preset),
-            "delete_preset": (Named, self.delete_preset),
+            "save_preset": (Named, self.presets.save),
+            "apply_preset": (Named, self.presets.apply),
+            "delete_preset": (Named, self.presets.delete),
         }
 
     # ---- life
@@ -115,12 +116,12 @@ class Session:
             logger.warning("the last tuning cannot be used: %s", problem.detail)
             self.scenario, self.preset = SCENARIOS[self._settings.scenario], None
             await self._load(self.scenario)
-            self._note(
+            self.note(
                 "scenario", f"The last tuning cannot be used: {problem.detail} Loaded {self.scenario.name}", "server"
             )
         else:
             if last is not None:
-                self._note("scenario", f"{self.scenario.name} and its last tuning are back", "server")
+                self.note("scenario", f"{self.scenario.name} and its last tuning are back", "server")
 
     async def _warm_workers(self) -> None:
         """Start the workers beside the control process; a worker that fails to start is tried again when it is needed."""
@@ -172,21 +173,23 @@ class Session:
             "tuning_id": self.status.tuning_id, "by": by,
         }  # fmt: skip
 
-    def _tell(self, message: Message) -> None:
+    def tell(self, message: Message) -> None:
+        """Send a message to every page."""
         for listener in list(self.listeners):
             listener(message)
 
     def _tell_state(self) -> None:
-        self._tell({"type": "state", "snapshot": self.snapshot()})
+        self.tell({"type": "state", "snapshot": self.snapshot()})
 
     def _tell_event(self, event: Event) -> None:
-        self._tell({"type": "event", "event": event.document()})
+        self.tell({"type": "event", "event": event.document()})
 
     def _tell_change(self, part: str, by: str, note: Note) -> None:
         words = [change_words(self.scenario, f"{part}.{path}", *pair) for path, pair in note.changes.items()]
         self.log.add(EVENT_KINDS[part], ", ".join(words), by, note.epoch, note.time_s)
 
-    def _note(self, kind: Kind, text: str, by: str, severity: Severity = "info") -> None:
+    def note(self, kind: Kind, text: str, by: str, severity: Severity = "info") -> None:
+        """Log an event of now."""
         self.log.add(kind, text, by, self.status.epoch, self.status.time_s, severity)
 
     # ---- reports of the control process
@@ -198,7 +201,7 @@ class Session:
         state = self.status.state
         severity: Severity = "fault" if state == "fault" else "warning" if state == "stopped" else "info"
         by = self.status.stopped_by or "server" if state == "stopped" else "session"
-        self._note("fault" if state == "fault" else "state", self.status.sentence(self.scenario), by, severity)
+        self.note("fault" if state == "fault" else "state", self.status.sentence(self.scenario), by, severity)
         self._tell_state()
         if state == "fault":
             self._spawn(self._keep_fault())
@@ -212,11 +215,11 @@ class Session:
             self.scenario,
             self.status.reason,
         )
-        self._note("fault", f"The last 2 s before the fault are kept in {file}", "server")
+        self.note("fault", f"The last 2 s before the fault are kept in {file}", "server")
 
     def _on_lost(self) -> None:
         self.status.fail("the control process ended unexpectedly. Press Reset to start it anew.")
-        self._note("fault", self.status.sentence(self.scenario), "server", "fault")
+        self.note("fault", self.status.sentence(self.scenario), "server", "fault")
         self._tell_state()
 
     # ---- commands
@@ -281,12 +284,11 @@ class Session:
                 done = await apply(new)
                 self.scenario = new
                 self._notes.add(part, by, found, self.status.epoch, done.time_s)
-                self._tell(self.document(by))
-                self._save_soon()
+                self.tell(self.document(by))
+                self.save_soon()
             return {
                 "tuning_id": self.status.tuning_id,
                 "applied": {path: after for path, (_, after) in found.items()},
-                "notes": [],
             }
 
     async def _install(self, new: Scenario) -> messages.Done:
@@ -314,9 +316,9 @@ class Session:
         async with self._turn:
             await self._load(scenario)
             self.preset = None
-            self._tell(self.document(by))
-            self._save_soon()
-        self._note("scenario", f"scenario {scenario.name} loaded", by)
+            self.tell(self.document(by))
+            self.save_soon()
+        self.note("scenario", f"scenario {scenario.name} loaded", by)
         return {"tuning_id": self.status.tuning_id}
 
     async def _load(self, scenario: Scenario) -> None:
@@ -325,7 +327,7 @@ class Session:
         await self._link.command(messages.Load(scenario, prepared, self.status.tuning_id + 1, run))
         self.status.tuning_id += 1
         self.scenario = scenario
-        self._tell(self.document())
+        self.tell(self.document())
 
     async def pause(self, _: Nothing, by: str) -> Message:
         """Hold time."""
@@ -351,51 +353,18 @@ class Session:
             else:
                 await self._link.command(messages.Reset())
         self.status.stopped_by = None
-        self._note("state", "reset to t = 0", by)
+        self.note("state", "reset to t = 0", by)
         return {}
 
     async def set_pace(self, asked: Pace, by: str) -> Message:
         """Ask for another real-time factor."""
         await self._link.command(messages.SetPace(asked.factor))
         self.status.pace = asked.factor
-        self._note("state", f"real-time factor {asked.factor:g}", by)
+        self.note("state", f"real-time factor {asked.factor:g}", by)
         self._tell_state()
         return {}
 
-    async def save_preset(self, asked: Named, by: str) -> Message:
-        """Save the tuning in force under a name."""
-        return await self.save_tuning(asked.name, self.scenario.tuning, by)
-
-    async def save_tuning(self, name: str, tuning: Tuning, by: str) -> Message:
-        """Save any tuning under a name; if it is the one in force, the session is now on that preset."""
-        preset = await asyncio.to_thread(self._store.save, name, tuning)
-        if tuning == self.scenario.tuning:
-            self.preset = name
-            self._save_soon()
-        self._tell(self.document(by))
-        self._note("preset", f"preset {name} saved", by)
-        return preset.document()
-
-    async def apply_preset(self, asked: Named, by: str) -> Message:
-        """Use a saved tuning."""
-        preset = await asyncio.to_thread(self._store.get, asked.name)
-        answer = await self.tune(Changes(replace=preset.tuning.model_dump(mode="json")), by)
-        self.preset = asked.name
-        self._save_soon()
-        self._tell(self.document(by))
-        self._note("preset", f"preset {asked.name} applied", by)
-        return answer
-
-    async def delete_preset(self, asked: Named, by: str) -> Message:
-        """Delete a saved tuning; the one in force stays."""
-        await asyncio.to_thread(self._store.delete, asked.name)
-        if self.preset == asked.name:
-            self.preset = None
-        self._tell(self.document(by))
-        self._note("preset", f"preset {asked.name} deleted", by)
-        return {}
-
-    def _save_soon(self) -> None:
+    def save_soon(self) -> None:
         """Keep what runs for the next start, once changes rest."""
         if self._save_timer is not None:
             self._save_timer.cancel()

@@ -53,8 +53,8 @@ export class ParameterRow {
     this.#pending += 1;
     this.root.classList.add("is-pending");
     try {
-      const result = await this.place.write(value, gesture);
-      this.say(result?.notes?.length ? result.notes.join(" ") : "", "warning");
+      await this.place.write(value, gesture);
+      this.say("");
       return true;
     } catch (refusal) {
       this.say(`${this.words(value)} refused: ${refusal.about?.(this.place.path) ?? refusal.message}`, "refused");
