@@ -63,7 +63,9 @@ def test_dragging_with_the_mouse_changes_the_torque(running: Server, open_page: 
     running.post("/api/session/set_reference", {"replace": {"kind": "step", "target": 0.02, "dwell_s": 1.0}})
     page = open_page(running)
     peak = "Math.max(...Array.from(window.vssea.store.column('motor_torque')).slice(-1500).map(Math.abs))"
-    wait_until(page, "() => window.vssea.latest('time') > 2.5")
+    wait_until(page, "() => window.vssea.store.length > 0")
+    stepping_from = page.evaluate("window.vssea.latest('time')")
+    wait_until(page, "t => window.vssea.latest('time') > t + 2.5", stepping_from)  # the window then holds whole steps
     before, was = tuning_id(page), page.evaluate(peak)
     box = page.locator(f"{FREQUENCY} input[type=range]").bounding_box()
     assert box is not None
