@@ -9,16 +9,10 @@ from vssea_core.signals.disturbances import disturbance_rows
 from vssea_core.signals.documents import Disturbances, Reference, StiffnessReference
 from vssea_core.signals.references import TRANSITION_SIZE, change_reference, reference_row
 from vssea_core.signals.stiffness import slew_row
-from vssea_core.simulation.kernel import NOT_FINITE, RAN_AWAY, SPRING_LEFT, run
+from vssea_core.simulation.kernel import ENDINGS, run
 from vssea_core.simulation.state import TRANSITION, equilibrium_state, inputs_of
 
 Numbers = NDArray[np.float64]
-
-FAULTS = {
-    NOT_FINITE: "a state became infinite or not a number",
-    SPRING_LEFT: "the deflection left ±π rad, where the spring's law ends",
-    RAN_AWAY: "the link is more than 1000 rad away",
-}
 
 
 class Engine:
@@ -89,4 +83,4 @@ class Engine:
         )  # fmt: skip
         self._before = self._prepared
         self._sample += done
-        return done, FAULTS.get(end)
+        return done, ENDINGS.get(end)

@@ -29,6 +29,12 @@ from vssea_core.signals.stiffness import SLEW_SIZE, SLEWED_SIZE, Slew, advance_s
 from vssea_core.simulation.state import APPLIED, HEAT, MEMORY, PENDING, PLANT, SLEWED, TRANSITION, loaded_rig
 
 RUNNING, NOT_FINITE, SPRING_LEFT, RAN_AWAY = 0, 1, 2, 3
+ENDINGS = {
+    NOT_FINITE: "a state became infinite or not a number",
+    SPRING_LEFT: "the deflection left ±π rad, where the spring's law ends",
+    RAN_AWAY: "the link is more than 1000 rad away",
+}
+"""Why a run cannot go on, in words."""
 FARTHEST = 1000.0  # rad; nothing that runs on purpose gets there
 
 

@@ -7,15 +7,9 @@ from vssea_core.control.prepared import prepare
 from vssea_core.scenario import Scenario
 from vssea_core.signals.references import reference_row
 from vssea_core.signals.stiffness import slew_row
-from vssea_core.simulation.kernel import NOT_FINITE, RAN_AWAY, RUNNING, SPRING_LEFT, run
+from vssea_core.simulation.kernel import ENDINGS, RUNNING, run
 from vssea_core.simulation.state import equilibrium_state, inputs_of
 from vssea_core.simulation.trajectory import Trajectory
-
-ENDINGS = {
-    NOT_FINITE: "a state became infinite or not a number",
-    SPRING_LEFT: "the deflection left ±π rad, where the spring's law ends",
-    RAN_AWAY: "the link is more than 1000 rad away",
-}
 
 
 def simulate(scenario: Scenario) -> Trajectory:
