@@ -13,22 +13,24 @@ from backend.telemetry.frames import frames
 from backend.telemetry.ring import COLUMNS, EPOCH, PERIOD_S, WIDTH, Piece
 from vssea_core.analysis.refusal import unstable_because
 from vssea_core.channels import CHANNELS, INDEX
-from vssea_core.control.prepared import prepare
 from vssea_core.control.tuning import Tuning
-from vssea_core.scenario import Scenario
+from vssea_core.scenario import Scenario, after_changes
 from vssea_core.simulation.metrics import limit_shares, metrics
-from vssea_core.simulation.run import simulate
+from vssea_core.simulation.plan import PreparedRun
+from vssea_core.simulation.run import prepare_scenario, simulate
 from vssea_core.simulation.trajectory import Trajectory
 
 
-def prepare_tuning(scenario: Scenario) -> NDArray[np.float64]:
-    """Return the numbers of the scenario's tuning. Raises ValueError if its own sampled loop is unstable."""
+def plan_run(scenario: Scenario) -> PreparedRun:
+    """Return the numbers of the scenario's tunings. Raises ValueError if a sampled loop is unstable by its own model."""
     refuse_unstable(scenario)
-    return prepare(scenario.tuning, scenario.timing.sample_time_s)
+    return prepare_scenario(scenario)
 
 
 def refuse_unstable(scenario: Scenario) -> None:
     """Raise ValueError with the reason and a remedy if the tuning is unstable at a stiffness the scenario commands."""
+    for _, after in after_changes(scenario):
+        refuse_unstable(after)
     reference = scenario.stiffness_reference
     asked = {reference.stiffness, reference.target} if reference.kind == "move" else {reference.stiffness}
     for stiffness in sorted(asked):

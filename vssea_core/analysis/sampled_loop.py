@@ -71,12 +71,14 @@ def closed_loop_matrix(
     Sliding mode is linear inside its boundary layer only; with sgn there is no such matrix, and ValueError is raised.
     """
     controller = tuning.controller
-    if isinstance(controller, SlidingMode) and controller.switch == "sgn":
-        raise ValueError("sliding mode with sgn has no linearisation; choose a boundary layer to analyse it")
+    if isinstance(controller, SlidingMode) and controller.switch in ("sgn", "super_twisting"):
+        raise ValueError(
+            f"sliding mode with {controller.switch} has no linearisation; choose a boundary layer to analyse it"
+        )
     plant = plant or model_plant(tuning.model)
     theta_ms = stiffness_motor_position(stiffness, tuning.model.spring_constant)
     rig = rig_numbers(plant, UNLIMITED, Encoders(0.0, 0.0, 0.0), torque_lag_s, timing)
-    prepared = prepare(tuning, timing.sample_time_s)
+    prepared = prepare(tuning, timing.sample_time_s, (stiffness, stiffness))
     still = reference_row(StepReference(origin=0.0, target=0.0))
     slew = np.zeros(SLEW_SIZE)
     slew[:] = Slew(0.0, theta_ms, theta_ms, 0.0, 1.0, 0.0, 1.0, 1.0, 1e12, 1.0, 1.0, tuning.model.spring_constant)
