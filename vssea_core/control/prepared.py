@@ -108,9 +108,9 @@ def _observer_gains(
     if isinstance(observer, VelocityObserver):
         exact = observer.discretisation == "exact"
         form = observer_design.velocity_exact if exact else observer_design.velocity_first_order_hold
-        matrices = form(bandwidth, sample_time_s)
+        matrices = form(bandwidth, sample_time_s, observer.shape)
         return _gains(sample_time_s, velocity=np.concatenate([part.ravel() for part in matrices]))
-    a, b0, b1, m = observer_design.position_form(bandwidth, damping_rate, sample_time_s)
+    a, b0, b1, m = observer_design.position_form(bandwidth, damping_rate, sample_time_s, observer.shape)
     return _gains(sample_time_s, position=np.array([*a[0, 1:], *a[1, 1:], b0[0], b1[0], b0[1], b1[1], *m]))
 
 
