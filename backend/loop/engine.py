@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from vssea_core.control.tuning import Tuning
 from vssea_core.scenario import Scenario
-from vssea_core.signals.disturbances import disturbance_rows
+from vssea_core.signals.disturbances import disturbance_tables
 from vssea_core.signals.documents import Disturbances, Reference, StiffnessReference
 from vssea_core.signals.references import TRANSITION_SIZE, change_reference, reference_row
 from vssea_core.signals.stiffness import slew_row
@@ -39,7 +39,7 @@ class Engine:
         state = equilibrium_state(self._scenario)
         inputs = inputs_of(self._scenario)
         self._state, self._sample, self.enabled = state, 0, True
-        self._rig, self._link_terms, self._motor_terms = inputs.rig, inputs.link_terms, inputs.motor_terms
+        self._rig, self._terms = inputs.rig, (inputs.link_terms, inputs.motor_terms, inputs.stiffness_terms)
         self._reference = reference_row(self._scenario.reference)
         self._slew = self._slewing(0.0)
 
@@ -72,13 +72,12 @@ class Engine:
     def set_disturbances(self, disturbances: Disturbances) -> None:
         """Apply other disturbances from the next sample on."""
         self._scenario = self._scenario.model_copy(update={"disturbances": disturbances})
-        self._link_terms = disturbance_rows(disturbances.link, self.period_s)
-        self._motor_terms = disturbance_rows(disturbances.motor, self.period_s)
+        self._terms = disturbance_tables(disturbances, self.period_s, self._scenario.seed)
 
     def advance(self, rows: Numbers) -> tuple[int, str | None]:
         """Advance by as many samples as `rows` (n, columns) has; return how many went well, and a fault's reason."""
         done, end = run(
-            self._rig, self._before, self._prepared, self._reference, self._slew, self._link_terms, self._motor_terms,
+            self._rig, self._before, self._prepared, self._reference, self._slew, *self._terms,
             self.enabled, self._tuning_id, self._state, self._sample, len(rows), rows,
         )  # fmt: skip
         self._before = self._prepared

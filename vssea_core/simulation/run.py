@@ -31,6 +31,7 @@ def simulate(scenario: Scenario) -> Trajectory:
         slew_row(scenario.stiffness_reference, scenario.tuning, scenario.actuator.stiffness, period),
         inputs.link_terms,
         inputs.motor_terms,
+        inputs.stiffness_terms,
         True,
         1.0,
         equilibrium_state(scenario),
