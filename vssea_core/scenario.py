@@ -64,6 +64,16 @@ class Scenario(Part):
     duration_s: float = parameter(
         10.0, "duration", unit="s", low=0.001, high=120.0, step=0.1, meaning="Length of a simulation."
     )
+    seed: int = parameter(
+        0,
+        "seed",
+        unit="",
+        low=0,
+        high=2**31 - 1,
+        typical=(0, 1000),
+        step=1,
+        meaning="Of all noise: the same seed gives the same run.",
+    )
 
     @model_validator(mode="after")
     def _parts_fit(self) -> Self:

@@ -86,7 +86,7 @@ def closed_loop_matrix(
 
     def after_one_sample(state: Numbers) -> Numbers:
         following = state.copy()
-        run(rig, prepared, prepared, still, slew, loads, loads, True, 0.0, following, 0, 1, rows)
+        run(rig, prepared, prepared, still, slew, loads, loads, loads, True, 0.0, following, 0, 1, rows)
         return following
 
     rest = np.zeros(STATE_SIZE)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from vssea_core.control.tuning import Tuning
 from vssea_core.scenario import Scenario
-from vssea_core.signals.disturbances import disturbance_rows
+from vssea_core.signals.disturbances import disturbance_tables
 from vssea_core.signals.documents import Disturbances, Reference, StiffnessReference
 from vssea_core.signals.references import TRANSITION_SIZE, change_reference, reference_row
 from vssea_core.signals.stiffness import slew_row
@@ -45,7 +45,7 @@ class ClosedLoop:
         state = equilibrium_state(self.scenario)
         inputs = inputs_of(self.scenario)
         self._state, self._sample, self.enabled = state, 0, True
-        self._rig, self._link_terms, self._motor_terms = inputs.rig, inputs.link_terms, inputs.motor_terms
+        self._rig, self._terms = inputs.rig, (inputs.link_terms, inputs.motor_terms, inputs.stiffness_terms)
         self._reference = reference_row(self.scenario.reference)
         self._slew = self._slewing(0.0)
         self._left = list(self._planned.followers)
@@ -85,8 +85,7 @@ class ClosedLoop:
     def set_disturbances(self, disturbances: Disturbances) -> None:
         """Apply other disturbances from the next sample on."""
         self.scenario = self.scenario.model_copy(update={"disturbances": disturbances})
-        self._link_terms = disturbance_rows(disturbances.link, self.period_s)
-        self._motor_terms = disturbance_rows(disturbances.motor, self.period_s)
+        self._terms = disturbance_tables(disturbances, self.period_s, self.scenario.seed)
 
     def advance(self, rows: Numbers) -> tuple[int, str | None]:
         """Advance by as many samples as `rows` (n, columns) has; return how many went well, and why it could not go on."""
@@ -98,7 +97,7 @@ class ClosedLoop:
                 until = min(until, done + self._sample_of(self._left[0]) - self._sample)
             part = rows[done:until]
             went, end = run(
-                self._rig, self._before, self._prepared, self._reference, self._slew, self._link_terms, self._motor_terms,
+                self._rig, self._before, self._prepared, self._reference, self._slew, *self._terms,
                 self.enabled, float(self.tuning_id), self._state, self._sample, len(part), part,
             )  # fmt: skip
             self._before = self._prepared

@@ -22,8 +22,10 @@ from vssea_core.actuator.drive import (
     warmed,
 )  # fmt: skip
 from vssea_core.actuator.dynamics import PlantState, advance_plant, dry_friction
+from vssea_core.actuator.parts import DELAY_LINE, advance_in_parts, passed_on
 from vssea_core.actuator.sensors import measure
 from vssea_core.actuator.spring import leaf
+from vssea_core.actuator.surroundings import meets_anything
 from vssea_core.compiled import entry, inlined
 from vssea_core.control.law import StiffnessTarget, act
 from vssea_core.control.observer import Memory, observe
@@ -39,7 +41,7 @@ from vssea_core.control.packing import (
 from vssea_core.control.prediction import predicted
 from vssea_core.signals.references import TRANSITION_SIZE, decay_transition, reference_at, with_transition
 from vssea_core.signals.stiffness import SLEW_SIZE, SLEWED_SIZE, Slew, advance_stiffness
-from vssea_core.simulation.state import APPLIED, HEAT, MEMORY, PENDING, PLANT, SLEWED, TRANSITION, loaded_rig
+from vssea_core.simulation.state import APPLIED, DELAYED, HEAT, MEMORY, PENDING, PLANT, SLEWED, TRANSITION, loaded_rig
 
 RUNNING, NOT_FINITE, SPRING_LEFT, RAN_AWAY = 0, 1, 2, 3
 ENDINGS = {
@@ -83,6 +85,7 @@ def run(
     slew_row,
     link_terms,
     motor_terms,
+    stiffness_terms,
     enabled,
     tuning_id,
     state,
@@ -106,6 +109,8 @@ def run(
     memory = loaded_memory(state[MEMORY : MEMORY + MEMORY_SIZE])
     transition = state[TRANSITION : TRANSITION + TRANSITION_SIZE]
     slewed = state[SLEWED : SLEWED + SLEWED_SIZE]
+    on_its_way = state[DELAYED : DELAYED + DELAY_LINE]
+    in_parts = rig.delay.samples + rig.delay.share != 0.0 or meets_anything(link_terms)
     applied_e, applied_ms = state[APPLIED], state[APPLIED + 1]
     pending_e, pending_ms = state[PENDING], state[PENDING + 1]
     changing = False
@@ -128,7 +133,7 @@ def run(
             if scheduled and gains_at(memory, slewed) != at:
                 break
             time = (first + i) * period
-            y = measure(rig.encoders, now)
+            y = measure(rig.encoders, rig.noise, now, first + i)
             memory = observe(observing, memory, y, applied_e, applied_ms)
             target = reference_at(reference, time)
             if changing:
@@ -162,9 +167,16 @@ def run(
                 applied_e, applied_ms = torque, stiffness_torque
 
             heat = warmed(drives, heat, applied_e, applied_ms)
-            following, load_l, load_e = advance_plant(
-                plant, rig.lags, now, applied_e, applied_ms, link_terms, motor_terms, time, period
-            )
+            if in_parts:
+                older, newer = passed_on(rig.delay, on_its_way, applied_e)
+                following, (load_l, load_e, load_ms) = advance_in_parts(
+                    plant, rig.torque_lag_s, now, older, newer, rig.delay.share, applied_ms,
+                    link_terms, motor_terms, stiffness_terms, time, period,
+                )  # fmt: skip
+            else:
+                following, (load_l, load_e, load_ms) = advance_plant(
+                    plant, rig.lags, now, applied_e, applied_ms, link_terms, motor_terms, stiffness_terms, time, period
+                )
             deflection = now.theta_e - now.theta_l
             spring = leaf(deflection, now.theta_ms)
             tau_s = plant.spring_constant * spring.torque
@@ -205,6 +217,9 @@ def run(
             rows[i, 26] = applied_ms
             rows[i, 27] = bits
             rows[i, 28] = tuning_id
+            rows[i, 29] = load_ms
+            rows[i, 30] = tuning.law.link_inertia * memory.link.d2
+            rows[i, 31] = tuning.law.motor_inertia * memory.motor.d1
 
             end = health(following)
             if end != RUNNING:
