@@ -20,6 +20,9 @@ from vssea_core.simulation.plan import PreparedRun
 from vssea_core.simulation.run import prepare_scenario, simulate
 from vssea_core.simulation.trajectory import Trajectory
 
+LONG = frozenset({"analysis_task", "paper_task"})
+"""Jobs that tell their progress and can be cancelled; see compute.worker."""
+
 
 def plan_run(scenario: Scenario) -> PreparedRun:
     """Return the numbers of the scenario's tunings. Raises ValueError if a sampled loop is unstable by its own model."""
