@@ -47,6 +47,7 @@ class PlantState(NamedTuple):
 
 FINEST = 8
 """Steps of the finest integration for each step of the fine one."""
+UNLOADED = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 SHARP_TURN = 1.0
 """Share of the friction's smoothing velocity that may pass in one period before the finest integration is needed."""
 
@@ -174,10 +175,11 @@ def stopped(plant, theta_ms, omega_ms):
 
 
 @inlined
-def advance_plant(plant, lags, state, tau_e, tau_ms, link_terms, motor_terms, stiffness_terms, time, sample_time_s):
+def advance_plant(plant, lags, state, tau_e, tau_ms, link_terms, motor_terms, time, sample_time_s):
     """Return the state one sample period after `time` [s], with the torques [N m] held by the drives, and the loads at `time`.
 
-    `lags` are the LagShares of a step, for each of the three finenesses.
+    `lags` are the LagShares of a step, for each of the three finenesses. The terms are constants and sines on link and
+    motor; actuator.parts is for all else.
     """
     y = (state.theta_l, state.theta_e, state.theta_ms, state.omega_l, state.omega_e, state.omega_ms)
     gap = state.motor_torque - tau_e
@@ -188,15 +190,14 @@ def advance_plant(plant, lags, state, tau_e, tau_ms, link_terms, motor_terms, st
     elif fineness == 2:
         steps, lag = int(plant.substeps) * FINEST, lags[2]
     h = sample_time_s / steps
-    load_l = load_e = load_ms = 0.0
+    load_l = load_e = 0.0
     for step in range(steps):
         loads_l = loads_of_step(link_terms, time, time + step * h, h, steps == 1)
         loads_e = loads_of_step(motor_terms, time, time + step * h, h, steps == 1)
-        loads_ms = loads_of_step(stiffness_terms, time, time + step * h, h, steps == 1)
         if step == 0:
-            load_l, load_e, load_ms = loads_l[0], loads_e[0], loads_ms[0]
-        y = dormand_prince_step(plant, None, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, loads_ms, h)
+            load_l, load_e = loads_l[0], loads_e[0]
+        y = dormand_prince_step(plant, None, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, UNLOADED, h)
         gap *= lag.left
     theta_l, theta_e, theta_ms, omega_l, omega_e, omega_ms = y
     theta_ms, omega_ms = stopped(plant, theta_ms, omega_ms)
-    return PlantState(theta_l, omega_l, theta_e, omega_e, theta_ms, omega_ms, tau_e + gap), (load_l, load_e, load_ms)
+    return PlantState(theta_l, omega_l, theta_e, omega_e, theta_ms, omega_ms, tau_e + gap), (load_l, load_e, 0.0)

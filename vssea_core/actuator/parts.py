@@ -1,4 +1,4 @@
-"""A sample period that is not smooth: the torque arrives late, so that two act in it, or the link meets something.
+"""A sample period for everything that few runs need: a late torque, so that two act in it, and disturbances of any kind.
 
 The period is split where the older torque gives way, and a step that ends in a wall is halved until the moment of contact
 lies within a thousandth of a step.
@@ -17,7 +17,7 @@ from vssea_core.actuator.dynamics import (
 from vssea_core.actuator.spring import leaf
 from vssea_core.actuator.surroundings import contact_steps, met_load, touches
 from vssea_core.compiled import called, inlined
-from vssea_core.signals.disturbances import load, loads_of_step
+from vssea_core.signals.disturbances import all_loads_of_step
 
 DELAY_LINE = 24  # past torques that the state keeps
 DEEPEST = 10  # halvings of a step that ends in a wall
@@ -45,7 +45,7 @@ def delay_of(torque_delay_s: float, sample_time_s: float) -> Delay:
     return Delay(float(whole), share if share > 1e-9 else 0.0)
 
 
-@inlined
+@called
 def steps_of_part(plant, state, tau_e, length, link_terms, tick_time, start):
     """Return the steps over a part of `length` [s]: from `start` [s]: as many as dry friction or walls ask for."""
     fineness = steps_of_period(plant, state, tau_e, length)
@@ -55,7 +55,8 @@ def steps_of_part(plant, state, tau_e, length, link_terms, tick_time, start):
     elif fineness == 2:
         steps = int(plant.substeps) * FINEST
     tau_s = plant.spring_constant * leaf(state.theta_e - state.theta_l, state.theta_ms).torque
-    force = abs(tau_s) + abs(load(link_terms, tick_time, start))
+    load_l = all_loads_of_step(link_terms, tick_time, start, 0.0, False)[0]
+    force = abs(tau_s) + abs(load_l)
     near = contact_steps(link_terms, tick_time, plant.per_link_inertia, state.theta_l, state.omega_l, force, length)
     return max(steps, near)
 
@@ -85,9 +86,9 @@ def advance_in_parts(
         while step < steps:
             at = start + step * h
             whole = h == sample_time_s
-            loads_l = loads_of_step(link_terms, time, at, h, whole)
-            loads_e = loads_of_step(motor_terms, time, at, h, whole)
-            loads_ms = loads_of_step(stiffness_terms, time, at, h, whole)
+            loads_l = all_loads_of_step(link_terms, time, at, h, whole)
+            loads_e = all_loads_of_step(motor_terms, time, at, h, whole)
+            loads_ms = all_loads_of_step(stiffness_terms, time, at, h, whole)
             if at == time:
                 load_l = loads_l[0] + met_load(link_terms, time, now.theta_l, now.omega_l)
                 load_e, load_ms = loads_e[0], loads_ms[0]

@@ -39,15 +39,6 @@ def met_load_at_rest(rows, time, theta_l):
     return met_load(rows, time, theta_l, 0.0)
 
 
-@inlined
-def meets_anything(rows):
-    """Return whether any row is a weight or a wall, active or not."""
-    found = False
-    for i in range(rows.shape[0]):
-        found = found or rows[i, 0] >= PENDULUM
-    return found
-
-
 @called
 def contact_steps(rows, tick_time, per_inertia, theta_l, omega_l, force, length):
     """Return the steps that the walls ask for over `length` [s]: 1 if none can be reached from here.
@@ -61,7 +52,7 @@ def contact_steps(rows, tick_time, per_inertia, theta_l, omega_l, force, length)
             stiffness += rows[i, 1]
             damping += rows[i, 2]
     rate = math.sqrt(stiffness * per_inertia) + damping * per_inertia
-    return max(1, int(math.ceil(rate * length / CONTACT_RATE_A_STEP)))
+    return max(1, math.ceil(rate * length / CONTACT_RATE_A_STEP))
 
 
 @called

@@ -177,6 +177,7 @@ def load(rows, tick_time, time):
 def loads_of_step(rows, tick_time, time, h, whole):
     """Return the torques [N m] at the six instants of a step of `h` [s] from `time`, in the period starting at `tick_time`.
 
+    For constants and sines, the terms of most runs; `all_loads_of_step` is for any.
     If the step is the `whole` period, the angles of a sine are turned by precomputed ones, which saves four sines.
     """
     a = b = c = d = e = f = 0.0
@@ -186,11 +187,6 @@ def loads_of_step(rows, tick_time, time, h, whole):
             angle = rows[i, 2] * time + rows[i, 3]
             if rows[i, 0] == CONSTANT:
                 a, b, c, d, e, f = a + size, b + size, c + size, d + size, e + size, f + size
-            elif rows[i, 0] > SINE:
-                if rows[i, 0] <= NOISE:
-                    rare = rare_loads_of_step(rows, i, tick_time, time, h)
-                    a, b, c = a + rare[0], b + rare[1], c + rare[2]
-                    d, e, f = d + rare[3], e + rare[4], f + rare[5]
             elif whole:
                 sine, cosine = size * math.sin(angle), size * math.cos(angle)
                 a += sine
@@ -208,6 +204,30 @@ def loads_of_step(rows, tick_time, time, h, whole):
                 e += size * math.sin(angle + C5 * turn)
                 f += size * math.sin(angle + C6 * turn)
     return a, b, c, d, e, f
+
+
+@called
+def all_loads_of_step(rows, tick_time, time, h, whole):
+    """Return `loads_of_step` for terms of any kind that is a function of time."""
+    a = b = c = d = e = f = 0.0
+    for i in range(rows.shape[0]):
+        if rows[i, 0] <= SINE:
+            part = loads_of_step(rows[i : i + 1], tick_time, time, h, whole)
+        elif rows[i, 0] <= NOISE and active(rows, i, tick_time):
+            part = rare_loads_of_step(rows, i, tick_time, time, h)
+        else:
+            continue
+        a, b, c, d, e, f = a + part[0], b + part[1], c + part[2], d + part[3], e + part[4], f + part[5]
+    return a, b, c, d, e, f
+
+
+@inlined
+def only_constants_and_sines(rows):
+    """Return whether `loads_of_step` does for these terms."""
+    found = True
+    for i in range(rows.shape[0]):
+        found = found and rows[i, 0] <= SINE
+    return found
 
 
 @entry

@@ -29,20 +29,19 @@ def noise_at(per_spacing, seed, stream, time):
     """Return the noise of unit variance at `time` [s]."""
     x = time * per_spacing
     node = math.floor(x)
-    first = int(node)
     return blended(
         x - node,
-        normal(seed, stream, first - 1),
-        normal(seed, stream, first),
-        normal(seed, stream, first + 1),
-        normal(seed, stream, first + 2),
+        normal(seed, stream, node - 1),
+        normal(seed, stream, node),
+        normal(seed, stream, node + 1),
+        normal(seed, stream, node + 2),
     )
 
 
 @called
 def noise_of_step(per_spacing, seed, stream, time, h, instants):
     """Return the noise at the six instants of a step of `h` [s] from `time`, each node drawn once."""
-    node = int(math.floor(time * per_spacing))
+    node = math.floor(time * per_spacing)
     n0, n1 = normal(seed, stream, node - 1), normal(seed, stream, node)
     n2, n3 = normal(seed, stream, node + 1), normal(seed, stream, node + 2)
     a = b = c = d = e = f = 0.0

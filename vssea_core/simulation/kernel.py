@@ -25,7 +25,6 @@ from vssea_core.actuator.dynamics import PlantState, advance_plant, dry_friction
 from vssea_core.actuator.parts import DELAY_LINE, advance_in_parts, passed_on
 from vssea_core.actuator.sensors import measure
 from vssea_core.actuator.spring import leaf
-from vssea_core.actuator.surroundings import meets_anything
 from vssea_core.compiled import entry, inlined
 from vssea_core.control.law import StiffnessTarget, act
 from vssea_core.control.observer import Memory, observe
@@ -39,6 +38,7 @@ from vssea_core.control.packing import (
     take_row,
 )  # fmt: skip
 from vssea_core.control.prediction import predicted
+from vssea_core.signals.disturbances import only_constants_and_sines
 from vssea_core.signals.references import TRANSITION_SIZE, decay_transition, reference_at, with_transition
 from vssea_core.signals.stiffness import SLEW_SIZE, SLEWED_SIZE, Slew, advance_stiffness
 from vssea_core.simulation.state import APPLIED, DELAYED, HEAT, MEMORY, PENDING, PLANT, SLEWED, TRANSITION, loaded_rig
@@ -110,7 +110,8 @@ def run(
     transition = state[TRANSITION : TRANSITION + TRANSITION_SIZE]
     slewed = state[SLEWED : SLEWED + SLEWED_SIZE]
     on_its_way = state[DELAYED : DELAYED + DELAY_LINE]
-    in_parts = rig.delay.samples + rig.delay.share != 0.0 or meets_anything(link_terms)
+    plain = only_constants_and_sines(link_terms) and only_constants_and_sines(motor_terms) and len(stiffness_terms) == 0
+    in_parts = rig.delay.samples + rig.delay.share != 0.0 or not plain
     applied_e, applied_ms = state[APPLIED], state[APPLIED + 1]
     pending_e, pending_ms = state[PENDING], state[PENDING + 1]
     changing = False
@@ -175,7 +176,7 @@ def run(
                 )  # fmt: skip
             else:
                 following, (load_l, load_e, load_ms) = advance_plant(
-                    plant, rig.lags, now, applied_e, applied_ms, link_terms, motor_terms, stiffness_terms, time, period
+                    plant, rig.lags, now, applied_e, applied_ms, link_terms, motor_terms, time, period
                 )
             deflection = now.theta_e - now.theta_l
             spring = leaf(deflection, now.theta_ms)
