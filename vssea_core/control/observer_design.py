@@ -15,7 +15,6 @@ from vssea_core.control.matrix_exponential import exponential_less_identity
 from vssea_core.control.observer_poles import (
     PositionShape,
     VelocityShape,
-    kalman_multipliers,
     position_poles,
     velocity_poles,
 )
@@ -81,27 +80,18 @@ def position_form(
     """Return A (5x5), B0, B1, M (5) of the observer of x = [theta, w, d, d', d''] on measured positions.
 
     x- = A x + B0 phi0 + B1 phi1;  x = x- + M (theta - x-[0]).  w' = -damping_rate w + phi - d, d''' = 0, exact for phi held
-    to first order; M places the five poles in the current form, so it adds no delay: all at exp(-g T), or where the Kalman
-    filter of five integrators (damping_rate 0) has them.
+    to first order; M places five poles at exp(s_i T) in the current form, so it adds no delay. `kalman` is optimal without
+    damping, and as good as optimal while damping_rate is well below g.
     """
-    if shape == "kalman":
-        return _position_form(kalman_multipliers(bandwidth, sample_time_s), damping_rate, sample_time_s)
     return position_form_of_poles(position_poles(bandwidth, shape), damping_rate, sample_time_s)
 
 
 def position_form_of_poles(
     poles: Poles, damping_rate: float, sample_time_s: float
 ) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-    """Return the matrices of `position_form` for five continuous poles s_i [rad/s], sampled as exp(s_i T)."""
-    return _position_form(np.expm1(np.asarray(poles, dtype=complex) * sample_time_s), damping_rate, sample_time_s)
+    """Return the matrices of `position_form` for five continuous poles s_i [rad/s], sampled as exp(s_i T).
 
-
-def _position_form(
-    multipliers: NDArray[np.complex128], damping_rate: float, sample_time_s: float
-) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-    """Return the matrices of `position_form` with the error's poles at 1 + `multipliers` (5,).
-
-    States scaled by the sample time, [theta, T w, T^2 d, ...]; A - I and z - 1 keep what a short sample changes.
+    Worked out in states scaled by the sample time, [theta, T w, T^2 d, ...]; A - I and z - 1 keep what a short sample changes.
     """
     p1, p2, p3, p4 = _integrals(-damping_rate * sample_time_s)
     change = np.array(
@@ -121,7 +111,7 @@ def _position_form(
     vectors = [gain]
     for _ in range(5):
         vectors.append(change @ vectors[-1])
-    m = np.append(polynomial_of(multipliers), 1.0) @ np.array(vectors)
+    m = np.append(polynomial_of(np.expm1(np.asarray(poles, dtype=complex) * sample_time_s)), 1.0) @ np.array(vectors)
     scale = sample_time_s ** np.arange(5.0)
     level, ramp = np.zeros(5), np.zeros(5)
     level[:2], ramp[:2] = (p2, p1), (p3, p2)

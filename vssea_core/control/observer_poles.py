@@ -1,7 +1,9 @@
 """Where the estimation error of a disturbance observer has its poles, and what error a changing disturbance leaves.
 
 One knob, the bandwidth g [rad/s]: `multiple` puts all poles at -g; `butterworth` spreads those of the velocity form on the
-circle of radius g; `kalman` is the position form's steady-state Kalman filter, Butterworth poles of radius g at short samples.
+circle of radius g; `kalman` is the position form's steady-state Kalman filter, which has Butterworth poles of radius g: with
+white noise of density q on d''' and of variance r on each measurement, g = (q / (r T))^(1/10). Sampled, they are at exp(s_i T) but
+for what is folded from beyond the Nyquist frequency, some (g T / 2 pi)^10.
 """
 
 from typing import Literal
@@ -16,9 +18,6 @@ VelocityShape = Literal["multiple", "butterworth"]
 PositionShape = Literal["multiple", "kalman"]
 VELOCITY_STATES, POSITION_STATES = 3, 5
 
-SAMPLED_SPECTRUM = (1.0, -5.0 / 12.0, 7.0 / 144.0, -17.0 / 12096.0, 1.0 / 362880.0)
-"""e(u), lowest power first: the sum over k of 1/(w + 2 pi k)^10 is e(u) / u^5 with u = 4 sin^2(w/2)."""
-
 
 def velocity_poles(bandwidth: float, shape: VelocityShape = "multiple") -> NDArray[np.complex128]:
     """Return the three continuous poles [rad/s] of the velocity form's error. Raises ValueError for an unknown shape."""
@@ -30,30 +29,12 @@ def velocity_poles(bandwidth: float, shape: VelocityShape = "multiple") -> NDArr
 
 
 def position_poles(bandwidth: float, shape: PositionShape = "multiple") -> NDArray[np.complex128]:
-    """Return the five continuous poles [rad/s] of the position form's error, for `kalman` those of the continuous limit.
-
-    Raises ValueError for an unknown shape.
-    """
+    """Return the five continuous poles [rad/s] of the position form's error. Raises ValueError for an unknown shape."""
     if shape == "multiple":
         return np.full(POSITION_STATES, -bandwidth, dtype=complex)
     if shape == "kalman":
         return butterworth_poles(POSITION_STATES, bandwidth)
     raise ValueError(f"the shape of a position observer is {shape!r}; expected 'multiple' or 'kalman'")
-
-
-def kalman_multipliers(bandwidth: float, sample_time_s: float) -> NDArray[np.complex128]:
-    """Return z - 1 (5,) of the steady-state Kalman filter of five integrators, sampled, with white noise into the last.
-
-    Noise density q of d''' and variance r of the measurement enter as g = (q / (r T))^(1/10) alone. Spectral factor of
-    u^5 + (g T)^10 e(u), u = 2 - z - 1/z, which is solved for u / (g T)^2.
-    """
-    size = (bandwidth * sample_time_s) ** 2
-    powers = size ** np.arange(5.0)
-    u = size * np.roots([1.0, *(np.array(SAMPLED_SPECTRUM) * powers)[::-1]]).astype(complex)
-    root = np.sqrt(u * u - 4.0 * u)
-    multipliers = np.stack([(root - u) / 2.0, (-root - u) / 2.0])
-    inside: NDArray[np.complex128] = np.where(np.abs(1.0 + multipliers[0]) < 1.0, multipliers[0], multipliers[1])
-    return inside
 
 
 def steady_errors(poles: Poles) -> Numbers:
