@@ -133,7 +133,7 @@ class Pool:
 
     def __init__(self) -> None:
         self.design = Worker("vssea design", niceness=0)
-        self.analysis = Worker("vssea analysis", niceness=5)
+        self.analysis = Worker("vssea analysis", niceness=8)
         self.simulation = Worker("vssea simulation", niceness=10)
         self.tasks = Worker("vssea tasks", niceness=15)
 
