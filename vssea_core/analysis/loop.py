@@ -12,6 +12,8 @@ from vssea_core.analysis.assembly import (
     BREAKS,
     INPUTS,
     LIMITER,
+    LINK_DISTURBANCE,
+    MOTOR_DISTURBANCE,
     PLANT_TORQUE,
     TORQUE,
     assembled,
@@ -57,7 +59,7 @@ class LoopModel:
 
     Inputs (INPUT_NAMES): torque added at the plant alone [N m]; torque added at the limiter, to plant and observer [N m];
     disturbances [N m], constant over each period; reference and derivatives [rad, rad/s ...]; measurement noise. Outputs
-    (OUTPUT_NAMES): demanded torque [N m], link position [rad], disturbance estimates [rad/s^2].
+    (OUTPUT_NAMES): demanded torque [N m], link position [rad], disturbance estimates [N m].
     """
 
     A: Numbers
@@ -130,6 +132,10 @@ class Pieces:
     def model(self, plant: LinearPlant) -> LoopModel:
         """Return the LoopModel with `plant`."""
         A, B, C, D = self.system(plant)
+        model = self.point.tuning.model
+        for row, inertia in ((LINK_DISTURBANCE, model.link_inertia), (MOTOR_DISTURBANCE, model.motor_inertia)):
+            C[row] *= inertia
+            D[row] *= inertia
         return LoopModel(A, B, C, D, self._states(plant), self.period_s, self.compute_delay, self.note)
 
     def _states(self, plant: LinearPlant) -> tuple[str, ...]:
