@@ -159,7 +159,7 @@ def frequency_grid(multipliers, period_s, per_decade):
     """Return frequencies [rad/s], ascending from 0.01 rad/s to Nyquist: logarithmic, and denser near poles that ring."""
     highest = math.pi / period_s
     decades = math.log10(highest / LOWEST_FREQUENCY)
-    count = max(2, int(math.ceil(decades * per_decade)) + 1)
+    count = max(2, math.ceil(decades * per_decade) + 1)
     extra = 0
     grid = np.empty(count + len(AROUND) * len(multipliers))
     for i in range(count):

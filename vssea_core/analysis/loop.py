@@ -7,7 +7,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from vssea_core.actuator.dynamics import lag_shares
 from vssea_core.analysis.assembly import (
     BREAKS,
     INPUTS,
@@ -180,8 +179,7 @@ def plant_over_period(plant: LinearPlant, theta_ms: float, period_s: float, frac
 
 def _step(row: Numbers, plant: LinearPlant, theta_ms: float, step_s: float) -> Numbers:
     columns = np.zeros((PLANT_STATES, PLANT_COLUMNS))
-    lag = np.array(lag_shares(plant.torque_lag_s, plant.motor_inertia, plant.motor_damping, step_s))
-    probe_plant(row, lag, theta_ms, step_s, columns)
+    probe_plant(row, plant.lag(step_s), theta_ms, step_s, columns)
     return columns
 
 

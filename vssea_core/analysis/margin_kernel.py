@@ -138,11 +138,15 @@ def margins_of(A, B, C, D, multipliers, period_s, delayed, per_decade, crossover
             s, t = values[place, i], values[place, i + 1]
             # On the way to Nyquist both ends are real; the last interval's own end is rounding.
             if i < count - 2 and s.imag * t.imag < 0.0 and (abs(s) > VANISHING or abs(t) > VANISHING):
-                w = crossing(H, b, c, D, grid[i], grid[i + 1], period_s, delayed, place, False, upper, solution, response)
+                w = crossing(
+                    H, b, c, D, grid[i], grid[i + 1], period_s, delayed, place, False, upper, solution, response
+                )
                 at = sensitivity(H, b, c, D, w, period_s, delayed, place, upper, solution, response)
                 real_axis(result, place, at.real, w)
             if (s.real - 0.5) * (t.real - 0.5) < 0.0:
-                w = crossing(H, b, c, D, grid[i], grid[i + 1], period_s, delayed, place, True, upper, solution, response)
+                w = crossing(
+                    H, b, c, D, grid[i], grid[i + 1], period_s, delayed, place, True, upper, solution, response
+                )
                 at = sensitivity(H, b, c, D, w, period_s, delayed, place, upper, solution, response)
                 L = 1.0 / at - 1.0
                 lag = math.atan2(-L.imag, -L.real)  # L exp(-j lag) = -1

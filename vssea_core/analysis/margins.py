@@ -141,10 +141,11 @@ def _margins(
 
 
 def _of_break(row: NDArray[np.float64], crossovers: NDArray[np.float64]) -> BreakMargins:
-    order = (
-        GAIN_UP, GAIN_UP_AT, GAIN_DOWN, GAIN_DOWN_AT, PHASE, PHASE_AT, DELAY, DELAY_AT, DISK, DISK_AT, PEAK, PEAK_AT,
+    of: list[float] = row.tolist()
+    return BreakMargins(
+        of[GAIN_UP], of[GAIN_UP_AT], of[GAIN_DOWN], of[GAIN_DOWN_AT], of[PHASE], of[PHASE_AT], of[DELAY], of[DELAY_AT],
+        of[DISK], of[DISK_AT], of[PEAK], of[PEAK_AT], tuple(crossovers[np.isfinite(crossovers)].tolist()),
     )  # fmt: skip
-    return BreakMargins(*(float(row[field]) for field in order), tuple(crossovers[np.isfinite(crossovers)].tolist()))
 
 
 def finite(number: float) -> float | None:

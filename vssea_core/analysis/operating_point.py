@@ -2,9 +2,13 @@
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Self
 
-from vssea_core.actuator.dynamics import Plant
+import numpy as np
+from numpy.typing import NDArray
+
+from vssea_core.actuator.dynamics import Plant, lag_shares
 from vssea_core.actuator.parameters import Actuator, Timing
 from vssea_core.actuator.spring import stiffness_motor_position
 from vssea_core.control.tuning import SlidingMode, Tuning
@@ -53,6 +57,10 @@ class LinearPlant:
         """Return this plant with `delay_s` [s] more transport delay."""
         return replace(self, torque_delay_s=self.torque_delay_s + delay_s)
 
+    def lag(self, step_s: float) -> NDArray[np.float64]:
+        """Return the LagShares (11,) of a step of `step_s` [s]. Do not change it: it is kept."""
+        return _lag_row(self.torque_lag_s, self.motor_inertia, self.motor_damping, step_s)
+
     def numbers(self) -> Plant:
         """Return the numbers of the kernel's plant: no dry friction, no end stops."""
         return _FRICTIONLESS._replace(
@@ -62,6 +70,11 @@ class LinearPlant:
             motor_damping=self.motor_damping,
             spring_constant=self.spring_constant,
         )
+
+
+@lru_cache(maxsize=1024)
+def _lag_row(lag_s: float, inertia: float, damping: float, step_s: float) -> NDArray[np.float64]:
+    return np.array(lag_shares(lag_s, inertia, damping, step_s))
 
 
 _FRICTIONLESS = plant_numbers(Actuator(), 1e-3)._replace(

@@ -66,7 +66,7 @@ def probe_plant(plant_row, lag_row, theta_ms, step_s, columns):
         inputs[column] = TINY
         loads[0, 0, 1], loads[1, 0, 1] = inputs[6], inputs[7]
         now = PlantState(inputs[0], inputs[1], inputs[2], inputs[3], theta_ms, 0.0, inputs[4])
-        after, _, _ = advance_plant(plant, (lag, lag, lag), now, inputs[5], 0.0, loads[0], loads[1], 0.0, step_s)
+        after = advance_plant(plant, (lag, lag, lag), now, inputs[5], 0.0, loads[0], loads[1], 0.0, step_s)[0]
         columns[0, column] = after.theta_l / TINY
         columns[1, column] = after.omega_l / TINY
         columns[2, column] = after.theta_e / TINY
@@ -141,7 +141,7 @@ def probe_stiffness_axis(plant_row, prepared_row, theta_ms, period_s, plant_colu
             inputs[column] = h
             if column < 3:
                 now = PlantState(0.0, 0.0, 0.0, 0.0, theta_ms + inputs[0], inputs[1], 0.0)
-                moved, _, _ = advance_plant(plant, (none, none, none), now, 0.0, inputs[2], calm, calm, 0.0, period_s)
+                moved = advance_plant(plant, (none, none, none), now, 0.0, inputs[2], calm, calm, 0.0, period_s)[0]
                 plant_columns[0, column] += moved.theta_ms / (2.0 * h)
                 plant_columns[1, column] += moved.omega_ms / (2.0 * h)
                 continue

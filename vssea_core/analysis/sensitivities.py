@@ -28,13 +28,13 @@ class Map:
 
 
 def _sensitivity(G: Complex, w: Numbers, loop: LoopModel) -> Complex:
-    late = np.exp(-1j * w * loop.period_s) if loop.compute_delay else 1.0
-    return 1.0 + late * G[:, TORQUE, PLANT_TORQUE]
+    late = np.exp(-1j * w * loop.period_s * loop.compute_delay)
+    return np.asarray(1.0 + late * G[:, TORQUE, PLANT_TORQUE])
 
 
 def _tracking(G: Complex, w: Numbers, loop: LoopModel) -> Complex:
     derivatives = (1j * w[:, None]) ** np.arange(NOISE - REFERENCE)
-    return 1.0 - np.sum(G[:, LINK, REFERENCE:NOISE] * derivatives, axis=1)
+    return np.asarray(1.0 - np.sum(G[:, LINK, REFERENCE:NOISE] * derivatives, axis=1))
 
 
 MAPS: tuple[Map, ...] = (
@@ -42,12 +42,19 @@ MAPS: tuple[Map, ...] = (
     Map("T", "complementary sensitivity T at the plant's input", "", lambda G, w, loop: 1.0 - _sensitivity(G, w, loop)),
     Map("S_limiter", "sensitivity at the limiter", "", lambda G, w, loop: 1.0 + G[:, TORQUE, LIMITER]),
     Map("reference_to_error", "reference to error", "rad/rad", _tracking),
-    Map("link_disturbance_to_error", "link disturbance to error", "rad/(N·m)", lambda G, w, loop: -G[:, LINK, LINK_LOAD]),
     Map(
-        "motor_disturbance_to_error", "motor disturbance to error", "rad/(N·m)", lambda G, w, loop: -G[:, LINK, MOTOR_LOAD]
+        "link_disturbance_to_error", "link disturbance to error", "rad/(N·m)", lambda G, w, loop: -G[:, LINK, LINK_LOAD]
+    ),
+    Map(
+        "motor_disturbance_to_error",
+        "motor disturbance to error",
+        "rad/(N·m)",
+        lambda G, w, loop: -G[:, LINK, MOTOR_LOAD],
     ),
     Map("link_noise_to_torque", "link encoder noise to torque", "N·m/rad", lambda G, w, loop: G[:, TORQUE, NOISE]),
-    Map("motor_noise_to_torque", "motor encoder noise to torque", "N·m/rad", lambda G, w, loop: G[:, TORQUE, NOISE + 1]),
+    Map(
+        "motor_noise_to_torque", "motor encoder noise to torque", "N·m/rad", lambda G, w, loop: G[:, TORQUE, NOISE + 1]
+    ),
     Map("link_estimate", "link disturbance to its estimate", "", lambda G, w, loop: G[:, 2, LINK_LOAD]),
     Map("motor_estimate", "motor disturbance to its estimate", "", lambda G, w, loop: G[:, 3, MOTOR_LOAD]),
 )
@@ -99,7 +106,9 @@ def sensitivities(loop: LoopModel) -> Sensitivities:
     grid: Numbers = frequency_grid(loop.multipliers, loop.period_s, PER_DECADE)
     G = response(loop, grid)
     curves = {each.name: each.of(G, grid, loop) for each in MAPS}
-    return Sensitivities(grid, curves, {name: _peak(loop, name, grid, curve) for name, curve in curves.items()}, loop.note)
+    return Sensitivities(
+        grid, curves, {name: _peak(loop, name, grid, curve) for name, curve in curves.items()}, loop.note
+    )
 
 
 def map_at(loop: LoopModel, name: str, frequencies: Numbers) -> Complex:
