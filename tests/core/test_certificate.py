@@ -78,6 +78,10 @@ def test_the_lyapunov_matrix_solves_its_equation_and_its_transient_bound_holds(g
     p = found.lyapunov_matrix
     assert np.allclose(scaled.T @ p + p @ scaled, -np.eye(4), atol=1e-9 * np.abs(p).max())
     assert np.linalg.eigvalsh(p).min() > 0.0
+    for x in np.linalg.eigh(p)[1].T:
+        assert found.decay / found.scale <= x @ x / (2.0 * x @ p @ x) * (1.0 + 1e-9), (
+            "the P-norm shrinks at least as fast"
+        )
     for time in np.linspace(0.0, 20.0, 200):
         bound = found.overshoot * math.exp(-found.decay * time / found.scale)
         assert np.linalg.norm(expm(scaled * time), 2) <= bound

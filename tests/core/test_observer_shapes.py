@@ -55,6 +55,21 @@ def test_the_position_form_has_any_five_poles(
     assert np.allclose(np.poly(in_samples(closed(a, m), t)), np.poly(np.exp(np.array(poles) * t)).real, atol=1e-8)
 
 
+@given(rate=st.floats(0.0, 4000.0), t=sample_times)
+@settings(deadline=None, max_examples=60)
+def test_the_position_forms_prediction_is_the_exponential_of_its_model(rate: float, t: float) -> None:
+    """From the smallest damping rate to one of many a sample; phi held to first order as a level and a ramp."""
+    block = np.diag([1.0, -1.0, 1.0, 1.0, 0.0, 1.0], 1)
+    block[1, 1] = -rate * t
+    block[1, 5] = 1.0
+    expected = expm(block)
+    a, b0, b1, _ = position_form(100.0, rate, t)
+    scale = t ** np.arange(5.0)
+    assert np.allclose(in_samples(a, t), expected[:5, :5], rtol=1e-9, atol=1e-14)
+    assert np.allclose((b0 + b1) * scale / t**2, expected[:5, 5], rtol=1e-9, atol=1e-14)
+    assert np.allclose(b1 * scale / t**2, expected[:5, 6], rtol=1e-9, atol=1e-14)
+
+
 def butterworth(order: int, g: float) -> np.ndarray:
     """Poles as the left half of the roots of s^(2n) = (-1)^(n+1) g^(2n)."""
     roots = np.roots([1.0, *[0.0] * (2 * order - 1), (-1.0) ** order])

@@ -12,6 +12,10 @@ from vssea_core.control.linear_model import LinearModel, plant_polynomial
 
 Weights = tuple[float, float, float, float] | NDArray[np.float64]
 
+FAR_APART = 3.0
+"""Decades between two squared poles above which the smaller is taken from the reversed polynomial."""
+TINY = 1e-300
+
 
 def lqr_chain_gains(weights: Weights, snap_weight: float) -> Numbers:
     """Return K (4) that minimises the integral of sum q_i e_i^2 + r nu^2 on the chain e' = Gamma e - b nu.
@@ -52,11 +56,25 @@ def lqr_plant_poles(model: LinearModel, weights: Weights, torque_weight: float) 
 
 
 def _stable_factor(coefficients: Numbers) -> NDArray[np.complex128]:
-    """Return the left half-plane roots s (4,) of f(s^2) = 0, for f of degree four, lowest power first, and f(0) > 0."""
+    """Return the left half-plane roots s (4,) of f(s^2) = 0, for f of degree four, lowest power first, and f(0) > 0.
+
+    Scaled by the mean radius; where roots lie far apart the small ones are taken from the reversed polynomial, in which they
+    are large.
+    """
     radius = float(coefficients[0] / coefficients[4]) ** 0.125
-    squares = np.roots((coefficients * radius ** (2.0 * np.arange(5)))[::-1])
-    poles: NDArray[np.complex128] = -radius * np.sqrt(squares.astype(complex))
+    scaled = coefficients / coefficients[4] / radius ** np.arange(8.0, -1.0, -2.0)
+    large, inverses = _largest_first(scaled[::-1]), _largest_first(scaled)
+    decades = np.log10(np.maximum(np.abs(large), TINY))
+    gaps = decades[:3] - decades[1:]
+    count = 1 + int(np.argmax(gaps)) if gaps.max() > FAR_APART else 4
+    squares = np.concatenate([large[:count], 1.0 / inverses[: 4 - count]])
+    poles: NDArray[np.complex128] = -radius * np.sqrt(squares)
     return poles
+
+
+def _largest_first(coefficients: Numbers) -> NDArray[np.complex128]:
+    roots = np.roots(coefficients).astype(complex)
+    return roots[np.argsort(-np.abs(roots), kind="stable")]
 
 
 def _check(weights: Weights, input_weight: float, positions: tuple[int, ...]) -> None:
