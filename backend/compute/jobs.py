@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from backend.compute.analysis_jobs import analyse_loop, analysis_task, margins_of
 from backend.telemetry.frames import frames
 from backend.telemetry.ring import COLUMNS, EPOCH, PERIOD_S, WIDTH, Piece
 from vssea_core.analysis.refusal import unstable_because
@@ -19,6 +20,8 @@ from vssea_core.simulation.metrics import limit_shares, metrics
 from vssea_core.simulation.plan import PreparedRun
 from vssea_core.simulation.run import prepare_scenario, simulate
 from vssea_core.simulation.trajectory import Trajectory
+
+__all__ = ["LONG", "analyse_loop", "analysis_task", "margins_of", "plan_run", "simulate_scenario", "simulate_to_file"]
 
 LONG = frozenset({"analysis_task", "paper_task"})
 """Jobs that tell their progress and can be cancelled; see compute.worker."""

@@ -33,8 +33,8 @@ Hearer = Callable[[float, str], None]
 class Worker:
     """One worker process with a queue of its own."""
 
-    def __init__(self, name: str, niceness: int = 10, entry: str = ENTRY) -> None:
-        self._name, self._niceness, self._entry = name, niceness, entry
+    def __init__(self, name: str, first_job: str, niceness: int = 10, entry: str = ENTRY) -> None:
+        self._name, self._first_job, self._niceness, self._entry = name, first_job, niceness, entry
         self._turn = asyncio.Lock()
         self._process: BaseProcess | None = None
         self._pipe: Connection
@@ -72,7 +72,9 @@ class Worker:
             return
         await self._end()
         self._pipe, theirs = CONTEXT.Pipe()
-        self._process = await asyncio.to_thread(started, self._name, self._entry, theirs, self._niceness)
+        self._process = await asyncio.to_thread(
+            started, self._name, self._entry, theirs, self._niceness, self._first_job
+        )
         theirs.close()
         await self._answer(None, START_LIMIT_S)
 
@@ -132,10 +134,10 @@ class Pool:
     """
 
     def __init__(self) -> None:
-        self.design = Worker("vssea design", niceness=0)
-        self.analysis = Worker("vssea analysis", niceness=8)
-        self.simulation = Worker("vssea simulation", niceness=10)
-        self.tasks = Worker("vssea tasks", niceness=15)
+        self.design = Worker("vssea design", "plan_run", niceness=0)
+        self.analysis = Worker("vssea analysis", "margins_of", niceness=8)
+        self.simulation = Worker("vssea simulation", "simulate_scenario", niceness=10)
+        self.tasks = Worker("vssea tasks", "simulate_scenario", niceness=15)
 
     async def stop(self) -> None:
         """End all of them."""

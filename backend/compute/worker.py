@@ -38,14 +38,14 @@ class Progress:
         return True
 
 
-def run_worker(pipe: Connection, niceness: int) -> None:
-    """Answer jobs (name, arguments) until the pipe closes; compile the kernels before the first."""
+def run_worker(pipe: Connection, niceness: int, first_job: str) -> None:
+    """Answer jobs (name, arguments) until the pipe closes; compile what `first_job` needs before the first."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     set_niceness(niceness)  # sums give way to the control loop and to STOP
     from backend.compute import jobs
     from backend.compute.warm import warm_up
 
-    warm_up()
+    warm_up(first_job)
     pipe.send(("ready", None))
     while True:
         try:

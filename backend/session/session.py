@@ -21,6 +21,7 @@ from backend.session.events import Event, EventLog, Kind, Severity
 from backend.session.fault_snapshot import save_fault_snapshot
 from backend.session.health import Health
 from backend.session.limit_watch import LimitWatch
+from backend.session.live_margins import LiveMargins
 from backend.session.notes import ChangeNotes, Note
 from backend.session.preset_commands import PresetCommands
 from backend.session.sentences import change_words
@@ -61,6 +62,7 @@ class Session:
         self.log = EventLog(self._tell_event)
         self._notes = ChangeNotes(self._tell_change)
         self._link = ControlLink(self._on_report, self._on_lost)
+        self.margins = LiveMargins(pool.analysis, self.tell)
         self._turn = asyncio.Lock()
         self._tasks: set[asyncio.Task[None]] = set()
         self._save_timer: asyncio.TimerHandle | None = None
@@ -94,6 +96,7 @@ class Session:
         """Save the last tuning and end the control process."""
         for task in self._tasks:
             task.cancel()
+        await self.margins.stop()
         await asyncio.gather(*self._tasks, return_exceptions=True)
         if self._save_timer is not None:
             self._save_timer.cancel()
@@ -126,7 +129,7 @@ class Session:
 
     async def _warm_workers(self) -> None:
         """Start the workers beside the control process; a worker that fails to start is tried again when it is needed."""
-        for worker in (self._pool.design, self._pool.simulation):
+        for worker in (self._pool.design, self._pool.analysis, self._pool.simulation):
             try:
                 await worker.start()
             except JobFailedError as failure:
@@ -286,6 +289,7 @@ class Session:
             if found:
                 done = await apply(new)
                 self.scenario = new
+                self.margins.ask(new, self.status.tuning_id)
                 await self._keep_sequence(part, asked)
                 self._notes.add(part, by, found, self.status.epoch, done.time_s)
                 self.tell(self.document(by))
@@ -314,6 +318,7 @@ class Session:
         before = self.scenario
         self.scenario = after_change(before, changed)
         self.status.tuning_id = report.tuning_id
+        self.margins.ask(self.scenario, report.tuning_id)
         words = [change_words(self.scenario, path, valued(before, path), value) for path, value in changed.items()]
         self.log.add("sequence", ", ".join(words), "sequence", self.status.epoch, report.time_s)
         self.tell(self.document("sequence"))
@@ -348,6 +353,7 @@ class Session:
         await self._link.command(messages.Load(scenario, planned, self.status.tuning_id + 1, run))
         self.status.tuning_id += 1
         self.scenario = self._beginning = scenario
+        self.margins.ask(scenario, self.status.tuning_id)
         self.tell(self.document())
 
     async def pause(self, _: Nothing, by: str) -> Message:

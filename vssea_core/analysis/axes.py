@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from vssea_core.analysis.operating_point import LinearPlant, OperatingPoint
-from vssea_core.control.tuning import StateFeedback, Tuning
+from vssea_core.control.tuning import NoObserver, SlidingMode, Tuning
 
 
 @dataclass(frozen=True)
@@ -30,15 +30,22 @@ def _factor(field: str) -> Callable[[OperatingPoint, float], OperatingPoint]:
 
 def _observer(field: str) -> Callable[[OperatingPoint, float], OperatingPoint]:
     def change(point: OperatingPoint, value: float) -> OperatingPoint:
-        observer = point.tuning.observer.model_copy(update={field: value})
-        return replace(point, tuning=point.tuning.model_copy(update={"observer": observer}))
+        observer = point.tuning.observer
+        if isinstance(observer, NoObserver):
+            raise ValueError(f"the observer is off, so it has no {field} to vary; choose another axis, or an observer")
+        changed_observer = observer.model_copy(update={field: value})
+        return replace(point, tuning=point.tuning.model_copy(update={"observer": changed_observer}))
 
     return change
 
 
 def _poles(point: OperatingPoint, value: float) -> OperatingPoint:
     controller = point.tuning.controller
-    field = "natural_frequency" if isinstance(controller, StateFeedback) else "surface_pole"
+    if not isinstance(controller, SlidingMode) and controller.design != "poles":
+        raise ValueError(
+            "the gains come from an LQR, so there are no poles to vary; choose another axis, or the design by poles"
+        )
+    field = "surface_pole" if isinstance(controller, SlidingMode) else "natural_frequency"
     return replace(point, tuning=_with_controller(point.tuning, field, value))
 
 
