@@ -17,7 +17,7 @@ from vssea_core.actuator.dynamics import (
 from vssea_core.actuator.spring import leaf
 from vssea_core.actuator.surroundings import contact_steps, met_load, touches
 from vssea_core.compiled import called, inlined
-from vssea_core.signals.disturbances import all_loads_of_step
+from vssea_core.signals.disturbances import all_loads_of_step, load
 
 DELAY_LINE = 24  # past torques that the state keeps
 DEEPEST = 10  # halvings of a step that ends in a wall
@@ -55,8 +55,7 @@ def steps_of_part(plant, state, tau_e, length, link_terms, tick_time, start):
     elif fineness == 2:
         steps = int(plant.substeps) * FINEST
     tau_s = plant.spring_constant * leaf(state.theta_e - state.theta_l, state.theta_ms).torque
-    load_l = all_loads_of_step(link_terms, tick_time, start, 0.0, False)[0]
-    force = abs(tau_s) + abs(load_l)
+    force = abs(tau_s) + abs(load(link_terms, tick_time, start))
     near = contact_steps(link_terms, tick_time, plant.per_link_inertia, state.theta_l, state.omega_l, force, length)
     return max(steps, near)
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from vssea_core.actuator.parameters import EquilibriumMotor, Sensors
 from vssea_core.compiled import called, inlined
-from vssea_core.signals.noise import POSITIONS, VELOCITIES, four_normals
+from vssea_core.signals.noise import SENSORS, four_normals
 
 
 class Encoders(NamedTuple):
@@ -67,8 +67,8 @@ def quantised(angle, resolution):
 @called
 def disturbed(noise, state, sample):
     """Return the Measurement of a PlantState by ideal encoders with the noise of a sample."""
-    a = four_normals(noise.seed, POSITIONS, sample)
-    b = four_normals(noise.seed, VELOCITIES, sample)
+    a = four_normals(noise.seed, SENSORS, 2 * sample)
+    b = four_normals(noise.seed, SENSORS, 2 * sample + 1)
     return Measurement(
         state.theta_l + noise.link * a[0],
         state.theta_e + noise.motor * a[1],

@@ -17,7 +17,7 @@ NOUGHT = np.uint64(0)
 ROUNDS = 10
 PER_WORD = 2.0**-32
 
-POSITIONS, VELOCITIES = 1, 2  # streams of the sensors' noise
+SENSORS = 1.0  # stream of the sensors' noise
 STREAMS_A_LIST = 256
 """Streams kept for the terms of one list of disturbances."""
 
