@@ -1,5 +1,6 @@
 """What the documents list is what the code has: settings, commands, routes, messages, channels and limits."""
 
+import importlib
 import json
 import re
 from pathlib import Path
@@ -83,3 +84,18 @@ def test_every_channel_and_limit_is_listed_in_order() -> None:
     assert [[cell.strip("`") for cell in row] for row in limits] == [
         [str(limit.bit), limit.name, limit.sentence] for limit in LIMITS
     ]
+
+
+def test_every_function_and_test_that_the_theory_names_exists() -> None:
+    text = (DOCS / "theory.md").read_text("utf-8")
+    named = {name for name in quoted(text) if name.startswith("vssea_core.")}
+    assert len(named) > 40
+    for name in named:
+        module, _, function = name.rpartition(".")
+        assert callable(getattr(importlib.import_module(module), function, None)), name
+    tests = {name for name in quoted(text) if name.startswith("tests/")}
+    assert len(tests) > 12
+    for place in tests:
+        file, _, function = place.partition("::")
+        source = (DOCS.parent / file).read_text("utf-8")
+        assert f"def {function}(" in source or not function, place
