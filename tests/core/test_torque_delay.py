@@ -9,7 +9,7 @@ from scipy.linalg import expm
 from tests.core.experiment import Experiment
 from vssea_core.actuator.dynamics import PlantState
 from vssea_core.actuator.parameters import Actuator, EquilibriumMotor, Timing
-from vssea_core.actuator.parts import DELAY_LINE, Delay, advance_in_parts, delay_of, passed_on
+from vssea_core.actuator.parts import DELAY_LINE, Delay, advance_in_parts, delay_of, lags_of_parts, passed_on
 from vssea_core.compiled import entry
 from vssea_core.scenario import Scenario
 from vssea_core.scenarios import NOMINAL, REALISTIC
@@ -25,13 +25,15 @@ TINY = 1e-5  # N m: the spring is linear to 1e-14 for the deflections that this 
 @entry
 def driven(plant, lag_s, delay, line, start, torques, none):  # type: ignore[no-untyped-def]
     """States (n, 7) of the plant at each tick, and at the end of the last, for a sequence of torques."""
-    now = start
+    now, lags = start, lags_of_parts(plant, lag_s, delay.share, 1e-3)
     states = np.empty((len(torques) + 1, 7))
     for k in range(len(torques)):
         for j in range(7):
             states[k, j] = now[j]
         older, newer = passed_on(delay, line, torques[k])
-        now, _ = advance_in_parts(plant, lag_s, now, older, newer, delay.share, 0.0, none, none, none, k * 1e-3, 1e-3)
+        now, _ = advance_in_parts(
+            plant, lag_s, lags, now, older, newer, delay.share, 0.0, none, none, none, k * 1e-3, 1e-3
+        )
     for j in range(7):
         states[len(torques), j] = now[j]
     return states

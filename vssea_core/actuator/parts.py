@@ -61,12 +61,35 @@ def steps_of_part(plant, state, tau_e, length, link_terms, tick_time, start):
 
 
 @called
+def lags_of_parts(plant, lag_s, share, sample_time_s):
+    """Return the LagShares of both parts of a period, each in one step."""
+    older, newer = share * sample_time_s, (1.0 - share) * sample_time_s
+    return (
+        lag_shares(lag_s, plant.per_motor_inertia, plant.motor_damping, older),
+        lag_shares(lag_s, plant.per_motor_inertia, plant.motor_damping, newer),
+    )
+
+
+@called
 def advance_in_parts(
-    plant, lag_s, state, older, newer, share, tau_ms, link_terms, motor_terms, stiffness_terms, time, sample_time_s
+    plant,
+    lag_s,
+    lags,
+    state,
+    older,
+    newer,
+    share,
+    tau_ms,
+    link_terms,
+    motor_terms,
+    stiffness_terms,
+    time,
+    sample_time_s,
 ):
     """Return the state one sample period after `time` [s], and the loads [N m] of link, motor, stiffness motor at `time`.
 
-    The torque `older` [N m] acts over the first `share` of the period, `newer` over the rest.
+    The torque `older` [N m] acts over the first `share` of the period, `newer` over the rest; `lags` are those of
+    `lags_of_parts`.
     """
     now = state
     load_l = load_e = load_ms = 0.0
@@ -81,7 +104,9 @@ def advance_in_parts(
         y = (now.theta_l, now.theta_e, now.theta_ms, now.omega_l, now.omega_e, now.omega_ms)
         step = depth = 0
         h = length / steps
-        lag = lag_shares(lag_s, plant.per_motor_inertia, plant.motor_damping, h)
+        lag = lags[part]
+        if steps > 1:
+            lag = lag_shares(lag_s, plant.per_motor_inertia, plant.motor_damping, h)
         while step < steps:
             at = start + step * h
             whole = h == sample_time_s

@@ -22,7 +22,7 @@ from vssea_core.actuator.drive import (
     warmed,
 )  # fmt: skip
 from vssea_core.actuator.dynamics import PlantState, advance_plant, dry_friction
-from vssea_core.actuator.parts import DELAY_LINE, advance_in_parts, passed_on
+from vssea_core.actuator.parts import DELAY_LINE, advance_in_parts, lags_of_parts, passed_on
 from vssea_core.actuator.sensors import measure
 from vssea_core.actuator.spring import leaf
 from vssea_core.compiled import entry, inlined
@@ -112,6 +112,9 @@ def run(
     on_its_way = state[DELAYED : DELAYED + DELAY_LINE]
     plain = only_constants_and_sines(link_terms) and only_constants_and_sines(motor_terms) and len(stiffness_terms) == 0
     in_parts = rig.delay.samples + rig.delay.share != 0.0 or not plain
+    part_lags = (rig.lags[0], rig.lags[0])
+    if in_parts:
+        part_lags = lags_of_parts(plant, rig.torque_lag_s, rig.delay.share, period)
     applied_e, applied_ms = state[APPLIED], state[APPLIED + 1]
     pending_e, pending_ms = state[PENDING], state[PENDING + 1]
     changing = False
@@ -171,7 +174,7 @@ def run(
             if in_parts:
                 older, newer = passed_on(rig.delay, on_its_way, applied_e)
                 following, (load_l, load_e, load_ms) = advance_in_parts(
-                    plant, rig.torque_lag_s, now, older, newer, rig.delay.share, applied_ms,
+                plant, rig.torque_lag_s, part_lags, now, older, newer, rig.delay.share, applied_ms,
                     link_terms, motor_terms, stiffness_terms, time, period,
                 )  # fmt: skip
             else:
