@@ -20,9 +20,9 @@ const POLES = [
 const PLANT_WEIGHTS = [
   { heading: "Weights on the plant’s state", when: is("design", "lqr_plant") },
   { name: "link_position_weight", short: "link", when: is("design", "lqr_plant") },
-  { name: "link_velocity_weight", short: "link velocity", when: is("design", "lqr_plant") },
+  { name: "link_velocity_weight", short: "link speed", when: is("design", "lqr_plant") },
   { name: "motor_position_weight", short: "motor", when: is("design", "lqr_plant") },
-  { name: "motor_velocity_weight", short: "motor velocity", when: is("design", "lqr_plant") },
+  { name: "motor_velocity_weight", short: "motor speed", when: is("design", "lqr_plant") },
   { name: "torque_weight", short: "torque", when: is("design", "lqr_plant") },
 ];
 const CHAIN_WEIGHTS = [
@@ -120,7 +120,18 @@ export const PANELS = [
       { kind: "chirp", label: "Chirp", fields: ["amplitude", "start_frequency_hz", "end_frequency_hz", "duration_s"] },
       { kind: "filtered_step", label: "Filtered", fields: ["origin", "target", "bandwidth", ...DWELL] },
       { kind: "multisine", label: "Multisine", fields: ["components"] },
-      { kind: "jog", label: "Jog", fields: ["velocity", "distance", "duration_s"] },
+      {
+        kind: "jog",
+        label: "Jog",
+        fields: [
+          "velocity",
+          "distance",
+          "duration_s",
+          { name: "acceleration", short: "acceleration" },
+          { name: "jerk", short: "jerk" },
+          { name: "snap", short: "snap" },
+        ],
+      },
       { kind: "recorded", label: "Recorded", fields: [{ name: "times_s", beside: "positions", short: "samples" }] },
     ],
   },
@@ -136,7 +147,14 @@ export const PANELS = [
     ],
     /* `main` is the amount on the term's own line where the kind `isQuick`: it is always there. `says` sums up the rest. */
     terms: [
-      { kind: "constant", label: "Constant", isQuick: true, main: "torque", fields: TIMES, says: (now) => [torque(now.torque)] },
+      {
+        kind: "constant",
+        label: "Constant",
+        isQuick: true,
+        main: "torque",
+        fields: TIMES,
+        says: (now) => [torque(now.torque)],
+      },
       {
         kind: "sine",
         label: "Sine",
@@ -149,7 +167,7 @@ export const PANELS = [
         kind: "multisine",
         label: "Multisine",
         fields: ["components", ...TIMES],
-        says: (now) => [`${now.components.length} sines`],
+        says: (now) => [`${now.components.length} sine${now.components.length === 1 ? "" : "s"}`],
       },
       {
         kind: "chirp",
@@ -164,7 +182,7 @@ export const PANELS = [
       {
         kind: "noise",
         label: "Noise",
-        fields: ["rms", "bandwidth_hz", ...TIMES],
+        fields: ["rms", { name: "bandwidth_hz", short: "bandwidth" }, ...TIMES],
         says: (now) => [`${torque(now.rms)} rms`, `${briefly(now.bandwidth_hz)} Hz`],
       },
       {
@@ -235,8 +253,8 @@ export const PANELS = [
         fields: [
           "inertia",
           "damping",
-          "coulomb_friction",
-          "friction_velocity",
+          { name: "coulomb_friction", short: "dry friction" },
+          { name: "friction_velocity", short: "smoothing" },
           { name: "torque_lag_s", short: "torque lag" },
           "torque_delay_s",
           "peak_torque",

@@ -49,7 +49,8 @@ export class DisturbanceTerm {
     this.amount?.echo({ part, kind, fields: [main], isPartial: true }, now, change);
     this.line.hidden = !isOne;
     if (!isOne) return this.open(false);
-    const own = this.amount ? [...fields, { name: main, when: () => false }] : fields;
+    const first = { name: main, when: () => !this.amount };
+    const own = main ? [first, ...fields] : fields;
     this.rows.echo({ part, kind, fields: own }, now, change);
     const says = this.shape.says(now).slice(this.amount ? 1 : 0);
     setText(this.words, [...says, this.#times(now)].join(", "));

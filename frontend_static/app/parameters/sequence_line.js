@@ -1,4 +1,5 @@
 import { element, setText } from "../element.js";
+import { fieldsNamed } from "../document/changeable_fields.js";
 import { inputText, readNumber } from "../quantity.js";
 import { CommitBox } from "./commit_box.js";
 
@@ -17,6 +18,7 @@ export class SequenceLine {
       class: "sequence-field",
     });
     this.name.root.addEventListener("focus", () => panel.offer(this));
+    this.name.root.addEventListener("input", () => this.#noticeChosen());
     this.target = element("div", { class: "sequence-target" });
     this.problem = element("p", { class: "panel-note", role: "status", hidden: true });
     this.gone = element("button", { type: "button", class: "quiet remove", click: () => panel.remove(this) }, "×");
@@ -64,11 +66,14 @@ export class SequenceLine {
     this.#changed();
   }
 
+  /** A name clicked in the list is complete. */
+  #noticeChosen() {
+    const text = this.name.root.value;
+    if (this.panel.fieldsAt(this).some(({ label }) => label === text)) this.#takeName(text);
+  }
+
   #takeName(text) {
-    const wanted = text.trim().toLowerCase();
-    const fields = this.panel.fieldsAt(this);
-    const named = fields.filter(({ label, path }) => label.toLowerCase() === wanted || path === wanted);
-    const found = named.length ? named : fields.filter(({ label }) => wanted && label.toLowerCase().includes(wanted));
+    const found = fieldsNamed(text, this.panel.fieldsAt(this));
     if (found.length !== 1) {
       this.wrong = found.length
         ? `“${text.trim()}” may be ${found.length} fields; choose one from the list`
@@ -80,9 +85,10 @@ export class SequenceLine {
     this.#changed();
   }
 
-  #takeValue(box, text) {
-    const value = readNumber(text);
-    this.wrong = Number.isFinite(value) ? "" : `“${text.trim()}” is not a number`;
+  #takeValue(box, text, { low, high, unit, isNullable }) {
+    const value = isNullable && text.trim() === "" ? null : readNumber(text);
+    const range = Number.isFinite(low + high) ? ` from ${inputText(low)} to ${inputText(high)} ${unit}` : "";
+    this.wrong = value === null || (value >= low && value <= high) ? "" : `“${text.trim()}” refused: expected a number${range}`;
     if (this.wrong) return this.#say(this.wrong, box);
     this.value = { ...this.value, value };
     this.#changed();
@@ -117,10 +123,17 @@ export class SequenceLine {
       });
       return [arrow, select];
     }
-    if (typeof value === "object" && value !== null) return [arrow, element("span", {}, "as the scenario has it")];
-    const box = new CommitBox("", (text) => this.#takeValue(box, text), { inputmode: "decimal" });
+    if (!field || (typeof value === "object" && value !== null)) return [arrow, element("span", {}, this.#asItIs())];
+    const take = (text) => this.#takeValue(box, text, field);
+    const box = new CommitBox("", take, { inputmode: "decimal", placeholder: field.isNullable ? "none" : null });
     box.show(inputText(value));
     return [arrow, box.root, element("span", { class: "row-unit" }, field?.unit ?? "")];
+  }
+
+  /** A value that this page cannot edit is kept. */
+  #asItIs() {
+    const { value } = this.value;
+    return typeof value === "object" ? "as the scenario has it" : String(value);
   }
 
   #say(text, box) {

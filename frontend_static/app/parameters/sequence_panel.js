@@ -26,7 +26,7 @@ export class SequencePanel {
     this.add = element("button", { type: "button", click: () => this.#add() }, "Add a change");
     this.apply = element("button", { type: "button", click: () => this.#apply() }, "Apply");
     this.discard = element("button", { type: "button", class: "quiet", click: () => this.#discard() }, "Discard");
-    this.hint = element("p", { class: "panel-hint is-warning", hidden: true }, "Not applied yet. Applying restarts at t = 0.");
+    this.hint = element("p", { class: "panel-note", hidden: true }, "Not applied yet. Applying restarts at t = 0.");
     const buttons = element("div", { class: "line" }, this.add, this.apply, this.discard);
     this.panel.body.append(this.empty, this.list, this.hint, buttons, this.note.root, this.fields);
     this.#arrange();
