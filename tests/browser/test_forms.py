@@ -57,7 +57,7 @@ def test_every_controller_and_design_runs(running: Server, open_page: OpenPage) 
         choose(page, running, "tuning.controller.kind", kind)
         for value in values:
             choose(page, running, f"tuning.controller.{field}", value)
-            goes_on(page)
+        goes_on(page)
 
 
 def test_a_tiny_weight_is_shown_and_edited_in_its_row(running: Server, open_page: OpenPage) -> None:
@@ -75,10 +75,9 @@ def test_every_observer_runs_and_rows_without_effect_are_hidden(running: Server,
     page = open_page(running)
     for kind, shapes in (("off", ()), ("position", ("kalman", "multiple")), ("velocity", ("butterworth", "multiple"))):
         choose(page, running, "tuning.observer.kind", kind)
-        goes_on(page)
         for shape in shapes:
             choose(page, running, "tuning.observer.shape", shape)
-            goes_on(page)
+        goes_on(page)
     velocity_filter = page.locator("[data-path='tuning.observer.velocity_filter']")
     expect(velocity_filter).to_have_count(0)
     choose(page, running, "tuning.observer.velocity_source", "difference")
@@ -164,7 +163,9 @@ def test_a_sequence_is_entered_runs_and_leaves_its_marks(running: Server, open_p
     assert [event["time_s"] for event in made[-2:]] == [0.5, 1.0]
     expect(page.locator("#event-log")).to_contain_text("sequence")
     goes_on(page)
-    panel.get_by_label("Remove change 2").click()  # the draft starts from t = 0, not from what the sequence has made of it
+    panel.get_by_label(
+        "Remove change 2"
+    ).click()  # the draft starts from t = 0, not from what the sequence has made of it
     panel.get_by_role("button", name="Apply").click()
     until(lambda: len(in_force(running, "sequence")) == 1)
     assert page.evaluate("window.vssea.session.document.beginning.tuning.controller.kind") == "state_feedback"
