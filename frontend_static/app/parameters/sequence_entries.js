@@ -1,6 +1,8 @@
 /** @returns {{at_s: number, path: string, value: any}[]} a sequence of the document, one field a line */
 export function linesOf(sequence) {
-  return sequence.flatMap(({ at_s, changes }) => Object.entries(changes).map(([path, value]) => ({ at_s, path, value })));
+  return sequence.flatMap(({ at_s, changes }) =>
+    Object.entries(changes).map(([path, value]) => ({ at_s, path, value })),
+  );
 }
 
 /** @returns {{at_s: number, changes: object}[]} lines as the document has them: in order, those of one time together */

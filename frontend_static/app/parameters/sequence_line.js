@@ -88,7 +88,8 @@ export class SequenceLine {
   #takeValue(box, text, { low, high, unit, isNullable }) {
     const value = isNullable && text.trim() === "" ? null : readNumber(text);
     const range = Number.isFinite(low + high) ? ` from ${inputText(low)} to ${inputText(high)} ${unit}` : "";
-    this.wrong = value === null || (value >= low && value <= high) ? "" : `“${text.trim()}” refused: expected a number${range}`;
+    const isFit = value === null || (value >= low && value <= high);
+    this.wrong = isFit ? "" : `“${text.trim()}” refused: expected a number${range}`;
     if (this.wrong) return this.#say(this.wrong, box);
     this.value = { ...this.value, value };
     this.#changed();

@@ -75,14 +75,15 @@ export class SequencePanel {
   /** The scenario with the kinds that all other changes up to a line's time choose. */
   #scenarioAt(line) {
     const before = this.#lines.filter((each) => each !== line && each.value.at_s <= line.value.at_s);
-    const kinds = before.filter(({ value }) => value.path.endsWith(".kind")).sort((a, b) => a.value.at_s - b.value.at_s);
-    const scenario = this.desk.document.beginning;
-    return withValues(scenario, Object.fromEntries(kinds.map(({ value }) => [value.path, value.value])));
+    const kinds = before.map(({ value }) => value).filter(({ path }) => path.endsWith(".kind"));
+    const inOrder = kinds.sort((a, b) => a.at_s - b.at_s).map(({ path, value }) => [path, value]);
+    return withValues(this.desk.document.beginning, Object.fromEntries(inOrder));
   }
 
   #add() {
     const last = this.#lines.at(-1)?.value.at_s;
-    const line = new SequenceLine(this, FIELDS_ID, { at_s: last === undefined ? FIRST_AT_S : last + 1, path: "", value: null });
+    const at_s = last === undefined ? FIRST_AT_S : last + 1;
+    const line = new SequenceLine(this, FIELDS_ID, { at_s, path: "", value: null });
     this.#lines.push(line);
     this.#arrange();
     line.field.focus();

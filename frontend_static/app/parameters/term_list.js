@@ -54,9 +54,9 @@ export class TermList {
     const now = this.desk.session.snapshot?.time_s ?? 0;
     for (const name of this.desk.schema.names(this.part, kind)) {
       const field = this.desk.schema.field(this.part, name, kind);
-      if (field.columns)
-        for (const part of made[name]) for (const column of field.columns) part[column.name] = this.#sized(column, part);
-      else made[name] = this.#sized(field, made);
+      made[name] = field.columns
+        ? made[name].map((part) => Object.fromEntries(field.columns.map((own) => [own.name, this.#sized(own, part)])))
+        : this.#sized(field, made);
     }
     return beginsNow ? { ...made, start_s: Math.ceil(now * 10) / 10 } : made;
   }
