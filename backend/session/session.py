@@ -172,9 +172,11 @@ class Session:
         if self.preset is not None:
             saved = self._store.known(self.preset)
             preset = saved and saved.document()
+        differs = self._beginning != self.scenario
+        beginning = self._beginning.model_dump(mode="json") if differs else None
         return {
-            "type": "document", "scenario": self.scenario.model_dump(mode="json"), "preset": preset,
-            "tuning_id": self.status.tuning_id, "by": by,
+            "type": "document", "scenario": self.scenario.model_dump(mode="json"), "beginning": beginning,
+            "preset": preset, "tuning_id": self.status.tuning_id, "by": by,
         }  # fmt: skip
 
     def tell(self, message: Message) -> None:
