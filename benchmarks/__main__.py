@@ -6,6 +6,11 @@ import importlib
 BENCHMARKS = {
     "numbers": ("benchmarks.numbers.report", "every number of the theory, recomputed by this code"),
     "kernel": ("benchmarks.kernel", "time of a simulated run, beside scipy and python-control"),
+    "maps": (
+        "benchmarks.maps",
+        "time of stability and margin maps and of the report on one tuning, beside python-control",
+    ),
+    "stability": ("benchmarks.stability", "linear predictions against nonlinear simulations at 400 random points"),
     "start": ("benchmarks.start", "from starting the server to something moving on the page"),
     "latency": ("benchmarks.latency", "slider to changed torque, STOP to zero torque"),
     "loop": ("benchmarks.loop", "the 1 kHz loop for two minutes: lateness, overruns, lost samples, processor time"),

@@ -11,13 +11,14 @@ from tests.reference.linear import closed_loop_matrix as reference_matrix
 from vssea_core.actuator.parameters import Actuator, Link, Timing
 from vssea_core.analysis.operating_point import LinearPlant
 from vssea_core.analysis.refusal import unstable_because
-from vssea_core.analysis.sampled_loop import closed_loop_matrix, stability
+from vssea_core.analysis.sampled_loop import closed_loop_matrix, stability, stiffness_axis_matrix
 from vssea_core.control.tuning import (
     ControllerModel,
     Observer,
     PositionObserver,
     SlidingMode,
     StateFeedback,
+    StiffnessLoop,
     Tuning,
     VelocityObserver,
 )
@@ -154,3 +155,30 @@ def test_sgn_has_no_linear_loop_to_judge() -> None:
     assert unstable_because(sgn, Timing(), 0.0, 200.0) is None
     with pytest.raises(ValueError, match="choose a boundary layer"):
         closed_loop_matrix(sgn, Timing(), 0.0, 200.0)
+
+
+def test_a_stiffness_loop_that_is_unstable_by_itself_is_refused_with_a_remedy_of_its_own() -> None:
+    slow = Timing(sample_time_s=5e-3, compute_delay_samples=1)
+    tuning = Tuning(
+        controller=SlidingMode(switch="sgn"), stiffness_loop=StiffnessLoop(bandwidth=400.0, observer_bandwidth=1000.0)
+    )
+    reason = unstable_because(tuning, slow, 0.0, 200.0)
+    assert reason is not None
+    assert reason.startswith("the stiffness loop of 400 rad/s")
+    gentle = tuning.model_copy(update={"stiffness_loop": StiffnessLoop(bandwidth=20.0, observer_bandwidth=20.0)})
+    assert unstable_because(gentle, slow, 0.0, 200.0) is None
+
+
+@pytest.mark.parametrize("delay", [0, 1])
+def test_the_stiffness_axis_decays_as_its_matrix_says(delay: int) -> None:
+    timing = Timing(compute_delay_samples=1 if delay else 0)
+    tuning = Tuning(stiffness_loop=StiffnessLoop(bandwidth=60.0))
+    scenario = Scenario(timing=timing, tuning=tuning, reference=StepReference(origin=0.0, target=0.0))
+    experiment = Experiment(scenario)
+    rest = experiment.state[4]
+    experiment.advance(1)
+    experiment.state[4] += 1e-3
+    away = experiment.advance(400)["stiffness_motor_position"] - rest
+    rate = np.polyfit(np.arange(150), np.log(np.abs(away[100:250])), 1)[0]
+    poles = np.abs(np.linalg.eigvals(stiffness_axis_matrix(tuning, timing, 200.0)))
+    assert rate == pytest.approx(np.log(poles.max()), rel=0.05)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from vssea_core.analysis.operating_point import LinearPlant, OperatingPoint
-from vssea_core.control.tuning import NoObserver, SlidingMode, Tuning
+from vssea_core.control.tuning import Controller, Observer, SlidingMode
 
 
 @dataclass(frozen=True)
@@ -28,15 +28,9 @@ def _factor(field: str) -> Callable[[OperatingPoint, float], OperatingPoint]:
     return lambda point, value: replace(point, plant=point.plant.scaled(**{field: value}))
 
 
-def _observer(field: str) -> Callable[[OperatingPoint, float], OperatingPoint]:
-    def change(point: OperatingPoint, value: float) -> OperatingPoint:
-        observer = point.tuning.observer
-        if isinstance(observer, NoObserver):
-            raise ValueError(f"the observer is off, so it has no {field} to vary; choose another axis, or an observer")
-        changed_observer = observer.model_copy(update={field: value})
-        return replace(point, tuning=point.tuning.model_copy(update={"observer": changed_observer}))
-
-    return change
+def _bandwidth(point: OperatingPoint, value: float) -> OperatingPoint:
+    observer = _with(point.tuning.observer, "bandwidth", value)
+    return replace(point, tuning=point.tuning.model_copy(update={"observer": observer}))
 
 
 def _poles(point: OperatingPoint, value: float) -> OperatingPoint:
@@ -45,12 +39,15 @@ def _poles(point: OperatingPoint, value: float) -> OperatingPoint:
         raise ValueError(
             "the gains come from an LQR, so there are no poles to vary; choose another axis, or the design by poles"
         )
-    field = "surface_pole" if isinstance(controller, SlidingMode) else "natural_frequency"
-    return replace(point, tuning=_with_controller(point.tuning, field, value))
+    field = "natural_frequency" if "natural_frequency" in type(controller).model_fields else "surface_pole"
+    changed_controller = _with(controller, field, value)
+    return replace(point, tuning=point.tuning.model_copy(update={"controller": changed_controller}))
 
 
-def _with_controller(tuning: Tuning, field: str, value: float) -> Tuning:
-    return tuning.model_copy(update={"controller": tuning.controller.model_copy(update={field: value})})
+def _with(part: Controller | Observer, field: str, value: float) -> Controller | Observer:
+    if field not in type(part).model_fields:
+        raise ValueError(f"{part.kind.replace('_', ' ')} has no {field.replace('_', ' ')} to vary; choose another axis")
+    return part.model_copy(update={field: value})
 
 
 def _delayed(plant: LinearPlant, delay_s: float) -> LinearPlant:
@@ -77,7 +74,7 @@ AXES: dict[str, Axis] = {
             "stiffness", "stiffness", "N·m/rad", 20.0, 1000.0, "log", "stiffness",
             lambda point, value: replace(point, stiffness=value),
         ),
-        Axis("bandwidth", "observer bandwidth g", "rad/s", 10.0, 1000.0, "log", "tuning", _observer("bandwidth")),
+        Axis("bandwidth", "observer bandwidth g", "rad/s", 10.0, 1000.0, "log", "tuning", _bandwidth),
         Axis("poles", "poles p", "rad/s", 2.0, 200.0, "log", "tuning", _poles),
     )
 }  # fmt: skip

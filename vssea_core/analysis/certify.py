@@ -22,6 +22,8 @@ PUSH_NM, PUSH_S = 1e-6, 0.01
 E_FOLDS = 14.0
 LONGEST_S, SHORTEST_S = 30.0, 1.0
 SMALL_DEFLECTION = 0.02  # rad; below, the spring's stiffness is constant within 5e-5
+MOST_WINDOWS, LEAST_WINDOWS = 60, 12
+"""How many windows the linear part is cut into."""
 SLOW = 4.0
 """e-folds below which a growth does not stand out against what happens at first."""
 RATE_TOLERANCE, RATE_FLOOR = 0.03, 0.2
@@ -121,11 +123,13 @@ def _growth(trajectory: Trajectory, frequency: float) -> float:
     """Return the growth rate [1/s] of the last half of the linear part, from its size over whole periods; NaN if too short."""
     y = _linear_part(trajectory)
     period = trajectory.period_s
-    window = max(8, round(2.0 * math.pi / (frequency * period))) if frequency > 1e-3 else max(8, len(y) // 40)
-    window = max(window, len(y) // 60)
-    count = len(y) // window
-    if count < 6:
+    whole = 2.0 * math.pi / max(frequency * period, 1e-9)
+    window = round(
+        min(max(whole, len(y) / MOST_WINDOWS), len(y) / LEAST_WINDOWS)
+    )  # few periods: the decay is fast, not the turn
+    if window < 4:
         return math.nan
+    count = len(y) // window
     sizes = np.sqrt(np.mean(y[len(y) - count * window :].reshape(count, window) ** 2, axis=1))
     late = sizes[count // 2 :]
     if np.any(late <= 0.0):

@@ -10,14 +10,14 @@ import math
 import numpy as np
 
 from vssea_core.analysis.frequency_response import frequency_grid, hessenberg_form, respond
-from vssea_core.compiled import entry
+from vssea_core.compiled import entry, inlined
 
 (
     GAIN_UP, GAIN_UP_AT, GAIN_DOWN, GAIN_DOWN_AT, PHASE, PHASE_AT, DELAY, DELAY_AT, DISK, DISK_AT, PEAK, PEAK_AT, FIELDS,
 ) = range(13)  # fmt: skip
 """Columns of the result: gains as factors, phase [rad], delay [s], disk margin alpha, peak of |S|, each with its w [rad/s]."""
-VANISHING = 1e-9
-"""|S| below this is rounding: a loop gain that large has no lower margin worth telling."""
+VANISHING = 1e-4
+"""|S| below this counts as zero: towards standstill it is rounding, and no drive loses all but a ten-thousandth of its gain."""
 STEPS = 60
 """Most steps of a refinement; it ends at 1e-9 of the frequency."""
 CLOSE = 1e-9
@@ -36,14 +36,20 @@ def sensitivity(H, b, c, D, w, period_s, delayed, place, upper, solution, respon
     return 1.0 + gain
 
 
+@inlined
+def offset(s, real):
+    """Return what vanishes at a crossing: Re S - 1/2 with `real` 1, else Im S."""
+    return s.real - 0.5 if real != 0 else s.imag
+
+
 @entry
 def crossing(H, b, c, D, low, high, period_s, delayed, place, real, upper, solution, response):
-    """Return where Im S (or, with `real`, Re S - 1/2) changes sign between `low` and `high` [rad/s]: Illinois, then bisection."""
+    """Return where Im S (or, with `real` 1, Re S - 1/2) changes sign between `low` and `high` [rad/s]: Illinois, then bisection."""
     a, d = low, high
     s = sensitivity(H, b, c, D, a, period_s, delayed, place, upper, solution, response)
-    fa = s.real - 0.5 if real else s.imag
+    fa = offset(s, real)
     s = sensitivity(H, b, c, D, d, period_s, delayed, place, upper, solution, response)
-    fd = s.real - 0.5 if real else s.imag
+    fd = offset(s, real)
     side = 0
     for step in range(STEPS):
         if d - a < CLOSE * d:
@@ -52,7 +58,7 @@ def crossing(H, b, c, D, low, high, period_s, delayed, place, real, upper, solut
         if not a < middle < d:
             middle = 0.5 * (a + d)
         s = sensitivity(H, b, c, D, middle, period_s, delayed, place, upper, solution, response)
-        f = s.real - 0.5 if real else s.imag
+        f = offset(s, real)
         if f == 0.0:
             return middle
         if (f > 0.0) == (fd > 0.0):
@@ -66,6 +72,79 @@ def crossing(H, b, c, D, low, high, period_s, delayed, place, real, upper, solut
                 fd *= 0.5
             side = -1
     return 0.5 * (a + d)
+
+
+@entry
+def dip(H, b, c, D, grid, i, f0, f1, f2, period_s, delayed, place, real, upper, solution, response):
+    """Return a frequency next to grid point `i` where Im S (or Re S - 1/2) has the other sign than at three points, or NaN.
+
+    f0, f1, f2 are its values at i - 1, i, i + 1, all of one sign, the middle one nearest to zero: two crossings may hide
+    between the points. The parabola through them tells whether to look closer.
+    """
+    low, high = grid[i - 1], grid[i + 1]
+    x0, x1, x2 = math.log(low), math.log(grid[i]), math.log(high)
+    slope0, slope1 = (f1 - f0) / (x1 - x0), (f2 - f1) / (x2 - x1)
+    curve = (slope1 - slope0) / (x2 - x0)
+    if curve == 0.0:
+        return np.nan
+    vertex = 0.5 * (x0 + x1) - 0.5 * slope0 / curve
+    bottom = f0 + slope0 * (vertex - x0) + curve * (vertex - x0) * (vertex - x1)
+    if bottom * f1 > SHALLOW * f1 * f1:
+        return np.nan
+    sign = math.copysign(1.0, f1)
+    a, d = low, high
+    x, y = a + GOLDEN * (d - a), d - GOLDEN * (d - a)
+    fx = sign * offset(sensitivity(H, b, c, D, x, period_s, delayed, place, upper, solution, response), real)
+    fy = sign * offset(sensitivity(H, b, c, D, y, period_s, delayed, place, upper, solution, response), real)
+    for _ in range(STEPS // 2):
+        if fx < 0.0:
+            return x
+        if fy < 0.0:
+            return y
+        if fx < fy:
+            d, y, fy = y, x, fx
+            x = a + GOLDEN * (d - a)
+            fx = sign * offset(sensitivity(H, b, c, D, x, period_s, delayed, place, upper, solution, response), real)
+        else:
+            a, x, fx = x, y, fy
+            y = d - GOLDEN * (d - a)
+            fy = sign * offset(sensitivity(H, b, c, D, y, period_s, delayed, place, upper, solution, response), real)
+    return np.nan
+
+
+@entry
+def crossings(H, b, c, D, grid, values, period_s, delayed, place, real, upper, solution, response):
+    """Return the frequencies, ascending, at which Im S (or, with `real` 1, Re S - 1/2) changes sign.
+
+    At Nyquist S is real, so Im S is rounding at the last point of `grid`.
+    """
+    last = len(grid) - 1 if real != 0 else len(grid) - 2
+    found = np.empty(2 * len(grid))
+    count = 0
+    for i in range(last):
+        f, g = offset(values[place, i], real), offset(values[place, i + 1], real)
+        if f * g < 0.0:
+            found[count] = crossing(
+                H, b, c, D, grid[i], grid[i + 1], period_s, delayed, place, real, upper, solution, response
+            )
+            count += 1
+        elif i > 0:
+            e = offset(values[place, i - 1], real)
+            if e * f > 0.0 and f * g > 0.0 and abs(f) <= abs(e) and abs(f) <= abs(g):
+                w = dip(H, b, c, D, grid, i, e, f, g, period_s, delayed, place, real, upper, solution, response)
+                if not math.isnan(w):
+                    found[count] = crossing(
+                        H, b, c, D, grid[i - 1], w, period_s, delayed, place, real, upper, solution, response
+                    )
+                    found[count + 1] = crossing(
+                        H, b, c, D, w, grid[i + 1], period_s, delayed, place, real, upper, solution, response
+                    )
+                    count += 2
+    return found[:count]
+
+
+SHALLOW = 0.5
+"""Share of the nearest value above which a dip between grid points is not looked at."""
 
 
 @entry
@@ -133,21 +212,14 @@ def margins_of(A, B, C, D, multipliers, period_s, delayed, per_decade, crossover
         still = sensitivity(H, b, c, D, 0.0, period_s, delayed, place, upper, solution, response)
         real_axis(result, place, still.real, 0.0)
         real_axis(result, place, values[place, count - 1].real, grid[count - 1])
-        crossed = 0
-        for i in range(count - 1):
-            s, t = values[place, i], values[place, i + 1]
-            # On the way to Nyquist both ends are real; the last interval's own end is rounding.
-            if i < count - 2 and s.imag * t.imag < 0.0 and (abs(s) > VANISHING or abs(t) > VANISHING):
-                w = crossing(
-                    H, b, c, D, grid[i], grid[i + 1], period_s, delayed, place, False, upper, solution, response
-                )
+        for real in range(2):
+            found = crossings(H, b, c, D, grid, values, period_s, delayed, place, real, upper, solution, response)
+            for i in range(len(found)):
+                w = found[i]
                 at = sensitivity(H, b, c, D, w, period_s, delayed, place, upper, solution, response)
-                real_axis(result, place, at.real, w)
-            if (s.real - 0.5) * (t.real - 0.5) < 0.0:
-                w = crossing(
-                    H, b, c, D, grid[i], grid[i + 1], period_s, delayed, place, True, upper, solution, response
-                )
-                at = sensitivity(H, b, c, D, w, period_s, delayed, place, upper, solution, response)
+                if real == 0:
+                    real_axis(result, place, at.real, w)
+                    continue
                 L = 1.0 / at - 1.0
                 lag = math.atan2(-L.imag, -L.real)  # L exp(-j lag) = -1
                 if abs(lag) < result[place, PHASE]:
@@ -155,9 +227,8 @@ def margins_of(A, B, C, D, multipliers, period_s, delayed, per_decade, crossover
                 late = (lag if lag > 0.0 else lag + 2.0 * math.pi) / w
                 if late < result[place, DELAY]:
                     result[place, DELAY], result[place, DELAY_AT] = late, w
-                if crossed < crossovers.shape[1]:
-                    crossovers[place, crossed] = w
-                    crossed += 1
+                if i < crossovers.shape[1]:
+                    crossovers[place, i] = w
         for kind in range(2):
             centre, at_field = (0.5, DISK) if kind == 0 else (0.0, PEAK)
             best, where = abs(still - centre), 0.0

@@ -11,7 +11,7 @@ from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from vssea_core.actuator.dynamics import LagShares, Plant, PlantState, advance_plant
 from vssea_core.actuator.sensors import Measurement
-from vssea_core.compiled import entry, inlined
+from vssea_core.compiled import entry
 from vssea_core.control.law import StiffnessTarget, Target, act
 from vssea_core.control.observer import Channel, Spring, observe
 from vssea_core.control.packing import MEMORY_SIZE, ROW, keep_memory, loaded_memory, loaded_prepared, take_row
@@ -41,8 +41,12 @@ LINK_ESTIMATE, MOTOR_ESTIMATE = POSITION_NAMES.index("link.d"), POSITION_NAMES.i
 PLANT_NAMES = ("link_position", "link_velocity", "motor_position", "motor_velocity", "motor_torque")
 PLANT_STATES, PLANT_COLUMNS = 5, 8
 """x and the columns of the plant: x, torque, link disturbance, motor disturbance."""
+POSITION_STATES = (0, 1, 2, 3, 6)
+"""Places of these states in a PlantState."""
 MEASURED = (0, 2, 1, 3)
-"""Plant states that are measured, in the order of y: both positions, both velocities."""
+"""Plant states that are measured: both positions, both velocities."""
+READINGS = (0, 1, 3, 4)
+"""Places of these in a Measurement."""
 OUTPUTS_OF_PLANT = 4
 REFERENCES = 5  # r and four derivatives
 OBSERVED = len(POSITION_NAMES)
@@ -51,45 +55,66 @@ LAW_COLUMNS = OBSERVED + 1 + REFERENCES
 
 
 @entry
+def one_tick(
+    prepared_row, memory_row, y, applied, waiting, delayed, reference, stiffness_reference, following, torques
+):
+    """Write the memory (n,) after the observers to `following`, and the torques (2,) of the law on `memory_row` as it is.
+
+    `y` (6,) is a Measurement, `applied` (2,) are both torques [N m] of the period that ended, `waiting` the motor torque [N m]
+    of the coming one if the loop is `delayed`, `reference` (5,) and `stiffness_reference` (3,) what the law is asked for, the
+    first rad being where gains are taken. A memory of zeros has not started: `following` is then at rest.
+    """
+    row = np.empty(ROW)
+    take_row(prepared_row, stiffness_reference[0], row)
+    prepared = loaded_prepared(prepared_row, row)
+    memory = loaded_memory(memory_row)
+    measured = Measurement(y[0], y[1], y[2], y[3], y[4], y[5])
+    keep_memory(following, observe(prepared, memory, measured, applied[0], applied[1]))
+    target = Target(reference[0], reference[1], reference[2], reference[3], reference[4])
+    hold = StiffnessTarget(stiffness_reference[0], stiffness_reference[1], stiffness_reference[2])
+    if delayed and prepared.law.predict != 0.0:
+        memory = predicted(prepared.law, memory, waiting, stiffness_reference[2])
+    terms = act(prepared.law, memory, target, hold)
+    torques[0], torques[1] = terms.motor_torque, terms.stiffness_torque
+
+
+@entry
+def one_step(plant_row, lag_row, state, torques, loads, step_s, following):
+    """Write the PlantState (7,) after a step of `step_s` [s] to `following`.
+
+    `torques` (2,) [N m] are held, `loads` (2,) [N m] on link and motor are constant; `lag_row` is the LagShares of the step.
+    """
+    plant = Plant(*to_fixed_tuple(plant_row[:PLANT_SIZE], PLANT_SIZE))
+    lag = LagShares(*to_fixed_tuple(lag_row[:LAG_SIZE], LAG_SIZE))
+    terms = np.zeros((2, 1, 16))
+    terms[:, 0, 0] = CONSTANT
+    terms[0, 0, 1], terms[1, 0, 1] = loads[0], loads[1]
+    terms[:, 0, 4], terms[:, 0, 5] = -np.inf, np.inf
+    now = PlantState(state[0], state[1], state[2], state[3], state[4], state[5], state[6])
+    after = advance_plant(plant, (lag, lag, lag), now, torques[0], torques[1], terms[0], terms[1], 0.0, step_s)[0]
+    for i in range(len(following)):
+        following[i] = after[i]
+
+
+@entry
 def probe_plant(plant_row, lag_row, theta_ms, step_s, columns):
     """Write the plant over `step_s` [s] to `columns` (5, 8): x+ from x, held torque, link and motor disturbance [N m].
 
     `lag_row` is the LagShares of that step. The disturbances are constant over the step.
     """
-    plant = Plant(*to_fixed_tuple(plant_row[:PLANT_SIZE], PLANT_SIZE))
-    lag = LagShares(*to_fixed_tuple(lag_row[:LAG_SIZE], LAG_SIZE))
-    loads = np.zeros((2, 1, 16))
-    loads[:, 0, 0] = CONSTANT
-    loads[:, 0, 4], loads[:, 0, 5] = -np.inf, np.inf
-    inputs = np.zeros(8)
-    for column in range(8):
-        inputs[:] = 0.0
-        inputs[column] = TINY
-        loads[0, 0, 1], loads[1, 0, 1] = inputs[6], inputs[7]
-        now = PlantState(inputs[0], inputs[1], inputs[2], inputs[3], theta_ms, 0.0, inputs[4])
-        after = advance_plant(plant, (lag, lag, lag), now, inputs[5], 0.0, loads[0], loads[1], 0.0, step_s)[0]
-        columns[0, column] = after.theta_l / TINY
-        columns[1, column] = after.omega_l / TINY
-        columns[2, column] = after.theta_e / TINY
-        columns[3, column] = after.omega_e / TINY
-        columns[4, column] = after.motor_torque / TINY
-
-
-@inlined
-def prepared_at(prepared_row, theta_ms):
-    """Return the Prepared with the gains at a stiffness motor position [rad]."""
-    row = np.empty(ROW)
-    take_row(prepared_row, theta_ms, row)
-    return loaded_prepared(prepared_row, row)
-
-
-@entry
-def rest_memory(prepared_row, theta_ms):
-    """Return the packed memory (n,) of a controller at rest at `theta_ms` [rad], the spring unloaded."""
-    rest = np.zeros(MEMORY_SIZE)
-    still = Measurement(0.0, 0.0, theta_ms, 0.0, 0.0, 0.0)
-    keep_memory(rest, observe(prepared_at(prepared_row, theta_ms), loaded_memory(rest), still, 0.0, 0.0))
-    return rest
+    state, following, torques, loads = np.zeros(7), np.zeros(7), np.zeros(2), np.zeros(2)
+    for column in range(PLANT_COLUMNS):
+        state[:], torques[:], loads[:] = 0.0, 0.0, 0.0
+        state[4] = theta_ms
+        if column < PLANT_STATES:
+            state[POSITION_STATES[column]] = TINY
+        elif column == PLANT_STATES:
+            torques[0] = TINY
+        else:
+            loads[column - PLANT_STATES - 1] = TINY
+        one_step(plant_row, lag_row, state, torques, loads, step_s, following)
+        for i in range(PLANT_STATES):
+            columns[i, column] = following[POSITION_STATES[i]] / TINY
 
 
 @entry
@@ -100,30 +125,33 @@ def probe_controller(prepared_row, theta_ms, delayed, observer, law):
     Columns of `law`: memory after the observers, torque that waits for a compute delay, r and its four derivatives (those of
     a sample later where the delay is compensated). `delayed` says whether there is a compute delay.
     """
-    prepared = prepared_at(prepared_row, theta_ms)
-    rest = rest_memory(prepared_row, theta_ms)
-    values, inputs = np.empty(MEMORY_SIZE), np.zeros(OBSERVED + 11)
+    rest, memory, following = np.zeros(MEMORY_SIZE), np.zeros(MEMORY_SIZE), np.zeros(MEMORY_SIZE)
+    y, applied, torques = np.zeros(6), np.zeros(2), np.zeros(2)
+    reference, hold = np.zeros(REFERENCES), np.zeros(3)
+    y[2] = hold[0] = theta_ms
+    one_tick(prepared_row, memory, y, applied, 0.0, delayed, reference, hold, rest, torques)
     for column in range(OBSERVED + 11):
-        inputs[:] = 0.0
-        inputs[column] = TINY
-        values[:] = rest
-        for i in range(OBSERVED):
-            values[POSITION_ENTRIES[i]] += inputs[i]
-        memory = loaded_memory(values)
-        y, r = inputs[OBSERVED : OBSERVED + 5], inputs[OBSERVED + 6 : OBSERVED + 11]
-        if column < OBSERVED + 5:
-            after = observe(prepared, memory, Measurement(y[0], y[1], theta_ms, y[2], y[3], 0.0), y[4], 0.0)
-            keep_memory(values, after)
-            for i in range(OBSERVED):
-                observer[i, column] = values[POSITION_ENTRIES[i]] / TINY
-        target, hold = Target(r[0], r[1], r[2], r[3], r[4]), StiffnessTarget(theta_ms, 0.0, 0.0)
-        if delayed and prepared.law.predict != 0.0:
-            memory = predicted(prepared.law, memory, inputs[OBSERVED + 5], 0.0)
-        torque = act(prepared.law, memory, target, hold).motor_torque / TINY
+        memory[:] = rest
+        y[0] = y[1] = y[3] = y[4] = 0.0
+        applied[0] = 0.0
+        reference[:] = 0.0
         if column < OBSERVED:
-            law[column] = torque
+            memory[POSITION_ENTRIES[column]] += TINY
+        elif column < OBSERVED + 4:
+            y[READINGS[column - OBSERVED]] = TINY
+        elif column == OBSERVED + 4:
+            applied[0] = TINY
+        elif column > OBSERVED + 5:
+            reference[column - OBSERVED - 6] = TINY
+        waiting = TINY if column == OBSERVED + 5 else 0.0
+        one_tick(prepared_row, memory, y, applied, waiting, delayed, reference, hold, following, torques)
+        if column < OBSERVED + 5:
+            for i in range(OBSERVED):
+                observer[i, column] = following[POSITION_ENTRIES[i]] / TINY
+        if column < OBSERVED:
+            law[column] = torques[0] / TINY
         elif column >= OBSERVED + 5:
-            law[column - 5] = torque
+            law[column - 5] = torques[0] / TINY
 
 
 STEP_OF_STIFFNESS_MOTOR = 2.0**-10
@@ -132,39 +160,39 @@ STIFFNESS_STATES, STIFFNESS_OBSERVED = 2, len(STIFFNESS_NAMES)
 
 
 @entry
-def probe_stiffness_axis(plant_row, prepared_row, theta_ms, period_s, plant_columns, observer, law):
+def probe_stiffness_axis(plant_row, prepared_row, theta_ms, period_s, delayed, plant_columns, observer, law):
     """Write the stiffness axis, the spring unloaded: plant (2, 3), observer (6, 9) and law (7,), as the two above.
 
     Its state is [theta_ms, theta_ms'] and is measured whole; about a position that is not zero, so by central differences.
     """
-    plant = Plant(*to_fixed_tuple(plant_row[:PLANT_SIZE], PLANT_SIZE))
-    none = LagShares(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    prepared = prepared_at(prepared_row, theta_ms)
-    calm = np.zeros((0, 16))
-    rest = rest_memory(prepared_row, theta_ms)
-    plant_columns[:] = 0.0
-    observer[:] = 0.0
-    law[:] = 0.0
-    values, inputs = np.empty(MEMORY_SIZE), np.zeros(12)
-    for column in range(12):  # x, torque; memory, y, applied
-        for side in range(2):
-            h = STEP_OF_STIFFNESS_MOTOR if side == 0 else -STEP_OF_STIFFNESS_MOTOR
-            inputs[:] = 0.0
-            inputs[column] = h
-            if column < 3:
-                now = PlantState(0.0, 0.0, 0.0, 0.0, theta_ms + inputs[0], inputs[1], 0.0)
-                moved = advance_plant(plant, (none, none, none), now, 0.0, inputs[2], calm, calm, 0.0, period_s)[0]
-                plant_columns[0, column] += moved.theta_ms / (2.0 * h)
-                plant_columns[1, column] += moved.omega_ms / (2.0 * h)
-                continue
-            values[:] = rest
+    rest, memory, following = np.zeros(MEMORY_SIZE), np.zeros(MEMORY_SIZE), np.zeros(MEMORY_SIZE)
+    y, applied, torques, lag = np.zeros(6), np.zeros(2), np.zeros(2), np.zeros(LAG_SIZE)
+    reference, hold, loads = np.zeros(REFERENCES), np.zeros(3), np.zeros(2)
+    state, moved = np.zeros(7), np.zeros(7)
+    y[2] = hold[0] = theta_ms
+    one_tick(prepared_row, memory, y, applied, 0.0, delayed, reference, hold, rest, torques)
+    plant_columns[:], observer[:], law[:] = 0.0, 0.0, 0.0
+    for side in range(2):
+        h = STEP_OF_STIFFNESS_MOTOR if side == 0 else -STEP_OF_STIFFNESS_MOTOR
+        for column in range(3):
+            state[4], state[5] = theta_ms + (h if column == 0 else 0.0), h if column == 1 else 0.0
+            applied[1] = h if column == 2 else 0.0
+            one_step(plant_row, lag, state, applied, loads, period_s, moved)
+            plant_columns[0, column] += moved[4] / (2.0 * h)
+            plant_columns[1, column] += moved[5] / (2.0 * h)
+        for column in range(STIFFNESS_OBSERVED + 3):
+            memory[:] = rest
+            y[2], y[5], applied[1] = theta_ms, 0.0, 0.0
+            if column < STIFFNESS_OBSERVED:
+                memory[STIFFNESS_ENTRIES[column]] += h
+            elif column == STIFFNESS_OBSERVED:
+                y[2] += h
+            elif column == STIFFNESS_OBSERVED + 1:
+                y[5] = h
+            else:
+                applied[1] = h
+            one_tick(prepared_row, memory, y, applied, 0.0, delayed, reference, hold, following, torques)
             for i in range(STIFFNESS_OBSERVED):
-                values[STIFFNESS_ENTRIES[i]] += inputs[3 + i]
-            memory = loaded_memory(values)
-            y = Measurement(0.0, 0.0, theta_ms + inputs[9], 0.0, 0.0, inputs[10])
-            keep_memory(values, observe(prepared, memory, y, 0.0, inputs[11]))
-            for i in range(STIFFNESS_OBSERVED):
-                observer[i, column - 3] += values[STIFFNESS_ENTRIES[i]] / (2.0 * h)
-            if column < 3 + STIFFNESS_OBSERVED:
-                held = act(prepared.law, memory, Target(0.0, 0.0, 0.0, 0.0, 0.0), StiffnessTarget(theta_ms, 0.0, 0.0))
-                law[column - 3] += held.stiffness_torque / (2.0 * h)
+                observer[i, column] += following[STIFFNESS_ENTRIES[i]] / (2.0 * h)
+            if column < STIFFNESS_OBSERVED:
+                law[column] += torques[1] / (2.0 * h)

@@ -5,7 +5,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from vssea_core.actuator.parameters import Timing
-from vssea_core.analysis.sampled_loop import Stability, stability
+from vssea_core.analysis.operating_point import LAYERED
+from vssea_core.analysis.sampled_loop import Stability, stability, stiffness_axis_stability
 from vssea_core.control.tuning import Baseline, Controller, NoObserver, SlidingMode, StateFeedback, Tuning
 
 HALVINGS = 12
@@ -14,10 +15,17 @@ HALVINGS = 12
 def unstable_because(tuning: Tuning, timing: Timing, torque_lag_s: float, stiffness: float) -> str | None:
     """Return one sentence on why `tuning` is unstable with its own model at `stiffness` [N m/rad], or None if it is stable.
 
-    Sliding mode is judged inside its boundary layer; with sgn it has no linear loop to judge, and None is returned.
+    Sliding mode is judged inside its boundary layer; without one it has no linear loop, and only the stiffness axis is judged.
     """
+    axis = stiffness_axis_stability(tuning, timing, stiffness)
+    if not axis.stable:
+        loop = tuning.stiffness_loop
+        what = (
+            f"the stiffness loop of {loop.bandwidth:.4g} rad/s with an observer of {loop.observer_bandwidth:.4g} rad/s"
+        )
+        return _sentence(what, axis, timing, torque_lag_s, stiffness, _stiffness_remedy(tuning, timing, stiffness))
     controller = tuning.controller
-    if isinstance(controller, SlidingMode) and controller.switch in ("sgn", "super_twisting"):
+    if isinstance(controller, SlidingMode) and controller.switch not in LAYERED:
         return None
 
     def judged(candidate: Tuning) -> Stability:
@@ -26,6 +34,11 @@ def unstable_because(tuning: Tuning, timing: Timing, torque_lag_s: float, stiffn
     found = judged(tuning)
     if found.stable:
         return None
+    remedy = _remedy(tuning, lambda candidate: judged(candidate).stable)
+    return _sentence(_described(tuning), found, timing, torque_lag_s, stiffness, remedy)
+
+
+def _sentence(what: str, found: Stability, timing: Timing, torque_lag_s: float, stiffness: float, remedy: str) -> str:
     growth = (
         "without bound"
         if math.isinf(found.radius)
@@ -33,11 +46,27 @@ def unstable_because(tuning: Tuning, timing: Timing, torque_lag_s: float, stiffn
     )
     delay = "no delay" if timing.compute_delay_samples == 0 else "one sample of delay"
     circumstances = f"{timing.sample_time_s * 1e3:g} ms, {delay}, lag {torque_lag_s * 1e3:g} ms"
-    remedy = _remedy(tuning, lambda candidate: judged(candidate).stable)
     return (
-        f"{_described(tuning)} is unstable even with its own model at {stiffness:.4g} N·m/rad ({circumstances}): "
+        f"{what} is unstable even with its own model at {stiffness:.4g} N·m/rad ({circumstances}): "
         f"errors grow {growth}; {remedy}"
     )
+
+
+def _stiffness_remedy(tuning: Tuning, timing: Timing, stiffness: float) -> str:
+    loop, found = tuning.stiffness_loop, []
+    for field, words in (
+        ("bandwidth", "a stiffness loop bandwidth"),
+        ("observer_bandwidth", "a stiffness observer bandwidth"),
+    ):
+
+        def stable(value: float, field: str = field) -> bool:
+            changed = tuning.model_copy(update={"stiffness_loop": loop.model_copy(update={field: value})})
+            return stiffness_axis_stability(changed, timing, stiffness).stable
+
+        value = _nearest(stable, 1.0, getattr(loop, field))
+        if value is not None:
+            found.append(f"{words} up to about {value:.3g} rad/s")
+    return f"{', or '.join(found)} would be stable" if found else "no single change is enough, so lower both bandwidths"
 
 
 def _described(tuning: Tuning) -> str:

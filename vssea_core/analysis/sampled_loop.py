@@ -64,11 +64,18 @@ def stiffness_axis_matrix(
     plant = np.zeros((STIFFNESS_STATES, STIFFNESS_STATES + 1))
     observer = np.zeros((STIFFNESS_OBSERVED, STIFFNESS_OBSERVED + STIFFNESS_STATES + 1))
     law = np.zeros(STIFFNESS_OBSERVED + 1)
+    delayed = timing.compute_delay_samples != 0
     probe_stiffness_axis(
-        np.array(numbers), prepare(tuning, period, (stiffness, stiffness)), theta_ms, period, plant, observer, law
+        np.array(numbers),
+        prepare(tuning, period, (stiffness, stiffness)),
+        theta_ms,
+        period,
+        delayed,
+        plant,
+        observer,
+        law,
     )
     whole = single_step_plant(plant, STIFFNESS_STATES)
-    delayed = timing.compute_delay_samples != 0
     measured, estimates = np.arange(STIFFNESS_STATES), np.zeros(2, dtype=np.int64)
     A: Numbers = assembled(whole, measured, observer, law, estimates, 0, False, delayed, NO_INPUTS)[0]
     return A
@@ -77,11 +84,19 @@ def stiffness_axis_matrix(
 def stability(
     tuning: Tuning, timing: Timing, torque_lag_s: float, stiffness: float, plant: LinearPlant | None = None
 ) -> Stability:
-    """Return the Stability of the sampled loop at `stiffness` [N m/rad]: position loop and stiffness axis together."""
-    position = closed_loop_matrix(tuning, timing, torque_lag_s, stiffness, plant)
-    axis = stiffness_axis_matrix(tuning, timing, stiffness)
-    if not (np.isfinite(position).all() and np.isfinite(axis).all()):
+    """Return the Stability of the sampled loop at `stiffness` [N m/rad]: the worse of position loop and stiffness axis."""
+    position = _stability(closed_loop_matrix(tuning, timing, torque_lag_s, stiffness, plant), timing)
+    return max(position, stiffness_axis_stability(tuning, timing, stiffness), key=lambda each: each.radius)
+
+
+def stiffness_axis_stability(tuning: Tuning, timing: Timing, stiffness: float) -> Stability:
+    """Return the Stability of the stiffness axis alone, on the tuning's own model."""
+    return _stability(stiffness_axis_matrix(tuning, timing, stiffness), timing)
+
+
+def _stability(matrix: Numbers, timing: Timing) -> Stability:
+    if not np.isfinite(matrix).all():
         return Stability(math.inf, 0.0)
-    multipliers = np.concatenate([np.linalg.eigvals(position), np.linalg.eigvals(axis)])
+    multipliers = np.linalg.eigvals(matrix)
     largest = multipliers[np.argmax(np.abs(multipliers))]
     return Stability(float(abs(largest)), float(abs(np.angle(largest)) / timing.sample_time_s))

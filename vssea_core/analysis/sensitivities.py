@@ -8,7 +8,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vssea_core.analysis.assembly import LIMITER, LINK, LINK_LOAD, MOTOR_LOAD, NOISE, PLANT_TORQUE, REFERENCE, TORQUE
+from vssea_core.analysis.assembly import (
+    LIMITER,
+    LINK,
+    LINK_DISTURBANCE,
+    LINK_LOAD,
+    MOTOR_DISTURBANCE,
+    MOTOR_LOAD,
+    NOISE,
+    PLANT_TORQUE,
+    REFERENCE,
+    TORQUE,
+)  # fmt: skip
 from vssea_core.analysis.frequency_response import frequency_grid, frequency_response
 from vssea_core.analysis.loop import LoopModel
 
@@ -32,6 +43,16 @@ def _sensitivity(G: Complex, w: Numbers, loop: LoopModel) -> Complex:
     return np.asarray(1.0 + late * G[:, TORQUE, PLANT_TORQUE])
 
 
+def _of_load(output: int, load: int, sign: float = 1.0) -> Callable[[Complex, Numbers, LoopModel], Complex]:
+    """Map of a sine load: its mean over each period acts; held from its value at the tick it would come half a period late."""
+
+    def of(G: Complex, w: Numbers, loop: LoopModel) -> Complex:
+        half = 0.5 * w * loop.period_s
+        return np.asarray(sign * G[:, output, load] * np.exp(1j * half) * np.sinc(half / np.pi))
+
+    return of
+
+
 def _tracking(G: Complex, w: Numbers, loop: LoopModel) -> Complex:
     derivatives = (1j * w[:, None]) ** np.arange(NOISE - REFERENCE)
     return np.asarray(1.0 - np.sum(G[:, LINK, REFERENCE:NOISE] * derivatives, axis=1))
@@ -42,21 +63,14 @@ MAPS: tuple[Map, ...] = (
     Map("T", "complementary sensitivity T at the plant's input", "", lambda G, w, loop: 1.0 - _sensitivity(G, w, loop)),
     Map("S_limiter", "sensitivity at the limiter", "", lambda G, w, loop: 1.0 + G[:, TORQUE, LIMITER]),
     Map("reference_to_error", "reference to error", "rad/rad", _tracking),
-    Map(
-        "link_disturbance_to_error", "link disturbance to error", "rad/(N·m)", lambda G, w, loop: -G[:, LINK, LINK_LOAD]
-    ),
-    Map(
-        "motor_disturbance_to_error",
-        "motor disturbance to error",
-        "rad/(N·m)",
-        lambda G, w, loop: -G[:, LINK, MOTOR_LOAD],
-    ),
+    Map("link_disturbance_to_error", "link disturbance to error", "rad/(N·m)", _of_load(LINK, LINK_LOAD, -1.0)),
+    Map("motor_disturbance_to_error", "motor disturbance to error", "rad/(N·m)", _of_load(LINK, MOTOR_LOAD, -1.0)),
     Map("link_noise_to_torque", "link encoder noise to torque", "N·m/rad", lambda G, w, loop: G[:, TORQUE, NOISE]),
     Map(
         "motor_noise_to_torque", "motor encoder noise to torque", "N·m/rad", lambda G, w, loop: G[:, TORQUE, NOISE + 1]
     ),
-    Map("link_estimate", "link disturbance to its estimate", "", lambda G, w, loop: G[:, 2, LINK_LOAD]),
-    Map("motor_estimate", "motor disturbance to its estimate", "", lambda G, w, loop: G[:, 3, MOTOR_LOAD]),
+    Map("link_estimate", "link disturbance to its estimate", "", _of_load(LINK_DISTURBANCE, LINK_LOAD)),
+    Map("motor_estimate", "motor disturbance to its estimate", "", _of_load(MOTOR_DISTURBANCE, MOTOR_LOAD)),
 )
 BY_NAME = {each.name: each for each in MAPS}
 
@@ -98,7 +112,7 @@ class Sensitivities:
 
 
 def sensitivities(loop: LoopModel) -> Sensitivities:
-    """Return the Sensitivities of `loop` from 0.01 rad/s to Nyquist. Disturbances are constant over each sample.
+    """Return the Sensitivities of `loop` from 0.01 rad/s to Nyquist. Disturbances act by their mean over each period.
 
     Raises ValueError if the closed loop is unstable.
     """
@@ -135,15 +149,17 @@ def require_stable(loop: LoopModel) -> None:
 def _peak(loop: LoopModel, name: str, grid: Numbers, curve: Complex) -> Peak:
     """Return the peak of `curve` over `grid`, its neighbourhood looked at twice more closely."""
     size = np.abs(curve)
+    top = int(np.argmax(size))
+    best = Peak(float(size[top]), float(grid[top]))
     for _ in range(2):
-        top = int(np.argmax(size))
-        low, high = grid[max(top - 1, 0)], grid[min(top + 1, len(grid) - 1)]
         if top in (0, len(grid) - 1):
             break
-        grid = np.linspace(low, high, 41)
+        grid = np.linspace(grid[top - 1], grid[top + 1], 41)
         size = np.abs(map_at(loop, name, grid))
-    top = int(np.argmax(size))
-    return Peak(float(size[top]), float(grid[top]))
+        top = int(np.argmax(size))
+        if size[top] > best.value:
+            best = Peak(float(size[top]), float(grid[top]))
+    return best
 
 
 def first_below(loop: LoopModel, name: str, level: float) -> float:

@@ -20,7 +20,7 @@ WORDS = {
 
 
 @dataclass(frozen=True)
-class Warning:  # noqa: A001 - a warning of the tuning, not of the interpreter
+class ThinMargin:
     """A thin margin: its sentence, what is concerned, and how thin it is (1 = at the threshold, 0 = at the border)."""
 
     sentence: str
@@ -32,18 +32,18 @@ class Warning:  # noqa: A001 - a warning of the tuning, not of the interpreter
         return {"sentence": self.sentence, "concerns": self.concerns, "share": self.share}
 
 
-def warning(found: Robustness) -> Warning | None:
-    """Return the Warning of the nearest danger, or None if every margin is ample.
+def warning(found: Robustness) -> ThinMargin | None:
+    """Return the ThinMargin of the nearest danger, or None if every margin is ample.
 
     Thin is: a gain margin within 1.5, 20 degrees of phase, 1.5 samples of delay, or a border within 25 % of an inertia or the
     spring; at the limiter, a gain margin below one within 1.5, as saturation lowers the gain.
     """
     if not found.margins.stable:
-        return Warning(found.margins.note or "the closed loop is unstable", "stability", 0.0)
+        return ThinMargin(found.margins.note or "the closed loop is unstable", "stability", 0.0)
     return min(_thin(found), key=lambda each: each.share, default=None)
 
 
-def _thin(found: Robustness) -> Iterator[Warning]:
+def _thin(found: Robustness) -> Iterator[ThinMargin]:
     for name in ("link_inertia", "motor_inertia", "spring_constant"):
         borders: StableRange | None = getattr(found, name)
         if borders is not None:
@@ -53,7 +53,7 @@ def _thin(found: Robustness) -> Iterator[Warning]:
         return
     yield from _factors("gain", plant.gain_down or None, plant.gain_up, THIN_GAIN)
     if plant.phase < THIN_PHASE:
-        yield Warning(
+        yield ThinMargin(
             f"only {math.degrees(plant.phase):.0f}° of phase are left at {plant.phase_frequency:.3g} rad/s",
             "phase",
             plant.phase / THIN_PHASE,
@@ -61,26 +61,26 @@ def _thin(found: Robustness) -> Iterator[Warning]:
     delays = [delay for delay in (found.delay_s, plant.delay_s) if delay is not None]
     samples = min(delays, default=math.inf) / found.period_s
     if samples < THIN_DELAY_SAMPLES:
-        yield Warning(
+        yield ThinMargin(
             f"unstable if the torque comes {samples * found.period_s * 1e3:.2g} ms ({samples:.2g} samples) later",
             "delay",
             samples / THIN_DELAY_SAMPLES,
         )
     if limiter.gain_down > 1.0 / THIN_GAIN:
         share = math.log(limiter.gain_down) / -math.log(THIN_GAIN)
-        yield Warning(
+        yield ThinMargin(
             f"unstable while limits let less than {100.0 * limiter.gain_down:.0f} % of the demanded torque through",
             "saturation",
             share,
         )
 
 
-def _factors(name: str, below: float | None, above: float | None, thin: float) -> Iterator[Warning]:
+def _factors(name: str, below: float | None, above: float | None, thin: float) -> Iterator[ThinMargin]:
     less, more = WORDS[name]
     if below is not None and below > 1.0 / thin:
-        yield Warning(f"unstable if {less.format(_percent(1.0 - below))}", name, math.log(below) / -math.log(thin))
+        yield ThinMargin(f"unstable if {less.format(_percent(1.0 - below))}", name, math.log(below) / -math.log(thin))
     if above is not None and above < thin:
-        yield Warning(f"unstable if {more.format(_percent(above - 1.0))}", name, math.log(above) / math.log(thin))
+        yield ThinMargin(f"unstable if {more.format(_percent(above - 1.0))}", name, math.log(above) / math.log(thin))
 
 
 def _percent(share: float) -> str:
