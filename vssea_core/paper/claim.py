@@ -60,7 +60,9 @@ class Number:
 
 def with_unit(value: float, unit: str) -> str:
     """Return `value` to three significant digits with its unit, such as `11.1 rad`."""
-    digits = f"{value:.0f}" if 1000.0 <= abs(value) < 1e6 else f"{value:.3g}"
+    digits = f"{value:.3g}"
+    if 1000.0 <= abs(value) < 1e6:
+        digits = f"{float(digits):.0f}"
     return f"{digits} {unit}".strip()
 
 

@@ -10,6 +10,11 @@ MILLI = 1e3
 BAND = 0.02 * 0.5
 """Error [rad] within which the link counts as recovered: 2 % of the reference's 0.5 rad."""
 LAWS = {"fig4a": "state feedback", "fig4b": "sliding mode"}
+NOTES = {
+    "fig4a": "When the disturbances jump, the torque reaches its limit for some milliseconds.",
+    "fig4b": "Switching by a boundary layer of ρ/φ = 50/s, not by sgn. Inside it the law is a state feedback of higher gain than "
+    "Fig. 4a's: hence the smaller error, and the rougher torque behind encoders.",
+}
 
 
 def _follows(runs: Runs, chatter_limit: float) -> tuple[Number, ...]:
@@ -52,7 +57,7 @@ def _following(number: int, panel: str, suffix: str, where: str, source: str, ch
         number, f"{LAWS[panel].replace(' ', '_')}_follows{suffix or '_on_rig'}", source,
         f"The robust {LAWS[panel]} controller follows its reference although disturbances act from 3 to 10 s: {where}.",
         "Reference less link from 4 to 10 s (2 % of the 0.5 rad), and how soon after 3 s it is within 2 % for good.",
-        tuple(f"{panel}_{task}{suffix}" for task in TASKS), partial(_follows, chatter_limit=chatter_limit),
+        tuple(f"{panel}_{task}{suffix}" for task in TASKS), partial(_follows, chatter_limit=chatter_limit), NOTES[panel],
     )  # fmt: skip
 
 
