@@ -43,7 +43,7 @@ SIDES = {"link": (LINK_DISTURBANCE, LINK_ESTIMATES), "motor": (MOTOR_DISTURBANCE
 
 def fig3(runs: Runs) -> Figure:
     """Return Fig. 3: a) pole placement and LQR with the observer, b) disturbances, c) their derivatives, with estimates."""
-    figure, (a, b, c) = stacked_panels(2.95, 1.95, 1.95)
+    figure, (a, b, c) = stacked_panels(2.95, 1.95, 2.05)
     _controlled(a, runs)
     titled(
         a, "a) Robust state feedback controller when the performance controller is tuned using pole placement and LQR."
@@ -54,7 +54,7 @@ def fig3(runs: Runs) -> Figure:
     _estimated(right, run, 0, {"motor": "motor"}, "on the motor (N·m)", 11.0)
     legend_above(b, left, right)
     titled(b, "b) Disturbances and their estimates.")
-    left, right = grid_of(c, (1.0,))[0]
+    left, right = grid_of(c, (1.0,), heads=True)[0]
     _estimated(left, run, 1, {"link": "link", "motor": "motor"}, "d/dt (N·m/s)", 60.0)
     _estimated(right, run, 2, {"link": ""}, "d²/dt² (N·m/s²)", 450.0)
     legend_above(c, left)

@@ -33,13 +33,10 @@ def paper_report(folder: str, progress: Callable[[float, str], object]) -> dict[
 
     svgs = {}
     for index, drawing in enumerate(DRAWINGS):
-        for half, form in enumerate(("svg", "png")):
-            done = (index + half / 2) / len(DRAWINGS)
-            progress(_SIMULATED + (1.0 - _SIMULATED) * done, f"drawing {drawing.name}.{form}")
-            content = drawn(drawing, runs, "svg" if form == "svg" else "png")
-            (to / f"{drawing.name}.{form}").write_bytes(content)
-            if form == "svg":
-                svgs[drawing.name] = content
+        progress(_SIMULATED + (1.0 - _SIMULATED) * index / len(DRAWINGS), f"drawing {drawing.name}")
+        svgs[drawing.name], png = drawn(drawing, runs)
+        for file, content in zip(drawing.files, (svgs[drawing.name], png), strict=True):
+            (to / file).write_bytes(content)
 
     document = {
         "schema": SCHEMA_VERSION,

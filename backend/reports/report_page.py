@@ -44,7 +44,7 @@ The same numbers are in <code>claims.json</code>; each scenario is in <code>scen
 <h2>Claims</h2>
 <div class="wide">
 <table>
-<thead><tr><th scope="col">No.</th><th scope="col">Claim</th><th scope="col">Measured</th><th scope="col">Criterion</th>
+<thead><tr><th scope="col">No.</th><th scope="col">Claim</th><th scope="col" colspan="2">Measured</th><th scope="col">Criterion</th>
 <th scope="col">Result</th></tr></thead>
 <tbody>
 {rows}
@@ -74,9 +74,12 @@ def _row(verdict: Verdict) -> str:
 
 def _cells(number: Number | None) -> str:
     if number is None:
-        return "<td></td><td></td>"
-    missed = "" if number.met else ' class="failed"'
-    return f"<td>{escape(number.label)} <b{missed}>{escape(number.text)}</b></td><td>{escape(number.criterion)}</td>"
+        return "<td></td><td></td><td></td>"
+    value = "value" if number.met else "value failed"
+    return (
+        f'<td>{escape(number.label)}</td><td class="{value}">{escape(number.text)}</td>'
+        f'<td class="criterion">{escape(number.criterion)}</td>'
+    )
 
 
 def _figure(drawing: Drawing, svg: bytes) -> str:

@@ -55,14 +55,14 @@ def _preserved(runs: Runs) -> tuple[Number, ...]:
 def _following(number: int, panel: str, suffix: str, where: str, source: str, chatter_limit: float) -> Claim:
     return Claim(
         number, f"{LAWS[panel].replace(' ', '_')}_follows{suffix or '_on_rig'}", source,
-        f"The robust {LAWS[panel]} controller follows its reference although disturbances act from 3 to 10 s: {where}.",
+        f"The robust {LAWS[panel]} controller follows its reference although disturbances act from 3 to 10 s, {where}.",
         "Reference less link from 4 to 10 s (2 % of the 0.5 rad), and how soon after 3 s it is within 2 % for good.",
         tuple(f"{panel}_{task}{suffix}" for task in TASKS), partial(_follows, chatter_limit=chatter_limit), NOTES[panel],
     )  # fmt: skip
 
 
-_NOMINAL = ("_nominal", "as the paper's simulations", "Sec. V, Fig. 4; simulated", 0.1)
-_ON_RIG = ("", "simulated encoders, friction, limits, lag and delay", "Sec. V, Fig. 4; simulated", 5.0)
+_NOMINAL = ("_nominal", "with the plant and sensors that it assumes", "Sec. V, Fig. 4; simulated", 0.1)
+_ON_RIG = ("", "on a simulated rig with encoders, friction, limits, lag and delay", "Sec. V, Fig. 4; simulated", 5.0)
 
 FIG4_CLAIMS: tuple[Claim, ...] = tuple(
     _following(number, panel, *setting)

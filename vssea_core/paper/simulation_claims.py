@@ -160,13 +160,13 @@ SIMULATION_CLAIMS: tuple[Claim, ...] = (
         "still far less sensitive.",
     ),
     *_for_each_design(
-        4, "observer_removes_error", "With the observer, disturbances are rejected markedly better: {}.",
+        4, "observer_removes_error", "With the observer, disturbances are rejected markedly better, with {}.",
         "RMS of the link less its undisturbed course from 4 to 10 s, without and with the observer; error against 2 % of 1 rad.",
         lambda design: (*_pairs(PANEL[design], f"fig3a_{design}"), f"fig3a_{design}_regulation_limited"), _removed,
         "At 3 s the disturbances jump; their estimated second derivative then asks for the peak torque.",
     ),
     *_for_each_design(
-        6, "response_kept", "The observer does not slow the response down: {}.",
+        6, "response_kept", "The observer does not slow the response down, with {}.",
         "The two undisturbed step responses, without and with the observer.",
         lambda design: (f"{PANEL[design]}_regulation_undisturbed", f"fig3a_{design}_regulation_undisturbed"), _kept,
     ),
