@@ -39,7 +39,7 @@ DRAWINGS: tuple[Drawing, ...] = (
         "fig3", fig3,
         "Fig. 3. The robust motion controller: the same poles and the same LQR with the second-order disturbance observer "
         "(g = 200 rad/s), under the disturbances of Fig. 2c; numbers are ours. True signals are wide and pale, estimates thin. "
-        "When the disturbances jump at 3 s, the estimated derivatives leave the axes for some milliseconds. Of the second "
+        "When the disturbances jump at 3 s, the estimated derivatives leave the axes for up to 45 ms. Of the second "
         "derivatives, the control laws need the link's alone.",
     ),
     Drawing(

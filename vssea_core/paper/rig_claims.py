@@ -11,7 +11,7 @@ BAND = 0.02 * 0.5
 """Error [rad] within which the link counts as recovered: 2 % of the reference's 0.5 rad."""
 LAWS = {"fig4a": "state feedback", "fig4b": "sliding mode"}
 NOTES = {
-    "fig4a": "When the disturbances jump, the torque reaches its limit for some milliseconds.",
+    "fig4a": "When the disturbances jump, the torque is at its limit for 20 to 35 ms.",
     "fig4b": "Switching by a boundary layer of ρ/φ = 50/s, not by sgn. Inside it the law is a state feedback of higher gain than "
     "Fig. 4a's: hence the smaller error, and the rougher torque behind encoders.",
 }
