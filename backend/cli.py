@@ -89,6 +89,31 @@ def simulate(
     typer.echo(json.dumps(json.loads(figures), indent=2, ensure_ascii=False))
 
 
+@app.command()
+def paper(
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder for the report; made if it is missing.")
+    ] = Path("paper-report"),
+) -> None:
+    """Check the paper: draw Figs. 2 to 4 from simulations and test each sentence of its results.
+
+    Exit status 1 if a claim fails.
+    """
+    from rich.console import Console
+
+    from backend.reports.paper import paper_report
+    from backend.reports.terminal import claims_shown, with_progress
+
+    try:
+        report = with_progress(lambda tell: paper_report(str(output), tell))
+    except OSError as error:
+        _refuse(f"{output} cannot be written: {error}; expected a folder of your own")
+    Console().print(claims_shown(report))
+    typer.echo(f"{report['statement']}\n{output / 'index.html'}")
+    if not report["passed"]:
+        raise typer.Exit(1)
+
+
 def _read(file: str) -> str:
     try:
         return sys.stdin.read() if file == "-" else Path(file).read_text("utf-8")
