@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from backend.compute.analysis_jobs import analyse_loop, analysis_task, margins_of
+from backend.compute.report_jobs import paper_task
 from backend.telemetry.frames import frames
 from backend.telemetry.ring import COLUMNS, EPOCH, PERIOD_S, WIDTH, Piece
 from vssea_core.analysis.refusal import unstable_because
@@ -21,7 +22,16 @@ from vssea_core.simulation.plan import PreparedRun
 from vssea_core.simulation.run import prepare_scenario, simulate
 from vssea_core.simulation.trajectory import Trajectory
 
-__all__ = ["LONG", "analyse_loop", "analysis_task", "margins_of", "plan_run", "simulate_scenario", "simulate_to_file"]
+__all__ = [
+    "LONG",
+    "analyse_loop",
+    "analysis_task",
+    "margins_of",
+    "paper_task",
+    "plan_run",
+    "simulate_scenario",
+    "simulate_to_file",
+]
 
 LONG = frozenset({"analysis_task", "paper_task"})
 """Jobs that tell their progress and can be cancelled; see compute.worker."""
