@@ -12,6 +12,7 @@ from starlette.middleware import Middleware
 from starlette.staticfiles import StaticFiles
 
 from backend.api.documentation import documentation
+from backend.api.export import export
 from backend.api.guard import Guard
 from backend.api.live import live
 from backend.api.problems import add_problem_handlers
@@ -59,6 +60,7 @@ def create_app(settings: Settings) -> FastAPI:
     )  # fmt: skip
     add_problem_handlers(app)
     app.include_router(resources(session, pool, store, answers.name))
+    app.include_router(export(session, pool))
     app.include_router(live(session))
     app.include_router(documentation())
     # The guard has checked Host and Origin of every websocket before this.

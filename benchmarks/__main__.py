@@ -6,6 +6,7 @@ import importlib
 BENCHMARKS = {
     "numbers": ("benchmarks.numbers.report", "every number of the theory, recomputed by this code"),
     "kernel": ("benchmarks.kernel", "time of a simulated run, beside scipy and python-control"),
+    "export": ("benchmarks.export", "one tick of the exported C controller, beside the compiled tick"),
     "start": ("benchmarks.start", "from starting the server to something moving on the page"),
     "latency": ("benchmarks.latency", "slider to changed torque, STOP to zero torque"),
     "loop": ("benchmarks.loop", "the 1 kHz loop for two minutes: lateness, overruns, lost samples, processor time"),

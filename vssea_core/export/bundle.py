@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 import zipfile
 
 from vssea_core.export.c_source import TEST_SOURCE, c_sources, packaged
@@ -10,13 +11,16 @@ from vssea_core.export.numbers import controller_numbers
 from vssea_core.export.vectors import as_c_header, as_csv, vectors_of
 from vssea_core.scenario import Scenario
 
+LIST_OF_NUMBERS = re.compile(r"\[\n([-+\d.eE,\s]+)\n\s*\]")
+"""What reads better on one line; a string of JSON holds no line break."""
 EARLIEST = (1980, 1, 1, 0, 0, 0)
 """Time stamp of files in the archive, so that equal controllers give equal bytes."""
 
 
 def json_file(scenario: Scenario) -> bytes:
     """Return controller.json: export.numbers, UTF-8. Raises ValueError if a design has no solution."""
-    return (json.dumps(controller_numbers(scenario), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+    text = json.dumps(controller_numbers(scenario), indent=1, ensure_ascii=False, allow_nan=False)
+    return (LIST_OF_NUMBERS.sub(lambda found: f"[{' '.join(found[1].split())}]", text) + "\n").encode()
 
 
 def mat_file(scenario: Scenario) -> bytes:

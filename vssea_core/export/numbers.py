@@ -38,7 +38,8 @@ class Legend:
 def controller_numbers(scenario: Scenario) -> Document:
     """Return the controller of `scenario` as plain numbers, lists and words, ready for JSON.
 
-    Names are those of the equations; what may follow the stiffness is a list with one entry for each of `gains.k`.
+    Names are those of the equations. Gains and the observers' matrices are lists over the stiffness: one entry for each of
+    `gains.k`, or a single one.
     Raises ValueError if a design has no solution.
     """
     tables = tables_of(scenario)

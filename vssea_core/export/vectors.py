@@ -44,10 +44,23 @@ class Vectors:
 
 
 def exercise(scenario: Scenario) -> Scenario:
-    """Return the scenario with a course that moves link and stiffness under load within a few hundred ticks."""
+    """Return the scenario with a course that moves link and stiffness under load, and a motor too weak for all of it.
+
+    Raises ValueError if a design has no solution.
+    """
+    moving = _moving(scenario)
+    _, _, rows = _recorded(moving)
+    motor, demand = moving.actuator.motor, np.abs(rows[:, INDEX["motor_torque_demand"]])
+    peak = min(motor.peak_torque, max(0.1, SATURATED_SHARE * float(np.max(demand))))
+    weak = {"peak_torque": peak, "continuous_torque": min(peak, motor.continuous_torque)}
+    actuator = moving.actuator.model_copy(update={"motor": motor.model_copy(update=weak)})
+    return moving.model_copy(update={"actuator": actuator})
+
+
+def _moving(scenario: Scenario) -> Scenario:
+    """Return the scenario with a move of the link and one of the stiffness, and loads on link and motor."""
     t, origin = scenario.timing.sample_time_s, scenario.initial.link_position
-    mechanism = scenario.actuator.stiffness
-    before = scenario.stiffness_reference.stiffness
+    before, mechanism = scenario.stiffness_reference.stiffness, scenario.actuator.stiffness
     after = 0.5 * before if 0.5 * before >= mechanism.softest else min(2.0 * before, mechanism.stiffest)
     return Scenario(
         name=scenario.name,
@@ -58,8 +71,11 @@ def exercise(scenario: Scenario) -> Scenario:
         initial=scenario.initial,
         seed=scenario.seed,
         reference=MoveReference(
-            origin=origin, target=origin - 0.2 if origin > 0.0 else origin + 0.2, start_s=20.0 * t,
-            duration_s=max(0.25, 200.0 * t), repeat=False,
+            origin=origin,
+            target=origin - 0.2 if origin > 0.0 else origin + 0.2,
+            start_s=20.0 * t,
+            duration_s=max(0.25, 200.0 * t),
+            repeat=False,
         ),
         stiffness_reference=MoveStiffness(
             stiffness=before, target=after, start_s=60.0 * t, duration_s=max(0.1, 100.0 * t)
@@ -68,8 +84,8 @@ def exercise(scenario: Scenario) -> Scenario:
             link=(ConstantDisturbance(torque=2.0, start_s=100.0 * t),),
             motor=(SineDisturbance(amplitude=3.0, frequency_hz=5.0, start_s=40.0 * t),),
         ),
-        duration_s=max(0.001, TICKS * t),
-    )  # fmt: skip
+        duration_s=TICKS * t,
+    )
 
 
 def vectors_of(scenario: Scenario) -> Vectors:
@@ -77,17 +93,9 @@ def vectors_of(scenario: Scenario) -> Vectors:
 
     Fewer than TICKS if the exercise runs away. Raises ValueError if a design has no solution.
     """
-    asked = exercise(scenario)
-    _, _, rows = _recorded(asked)
-    motor = asked.actuator.motor
-    peak = min(motor.peak_torque, SATURATED_SHARE * float(np.max(np.abs(rows[:, INDEX["motor_torque_demand"]]))))
-    peak = max(peak, 0.1)
-    limited = motor.model_copy(
-        update={"peak_torque": peak, "continuous_torque": min(peak, motor.continuous_torque)}
-    )
-    inputs, states, _ = _recorded(asked.model_copy(update={"actuator": asked.actuator.model_copy(update={"motor": limited})}))
+    asked, tables = exercise(scenario), tables_of(scenario)
+    inputs, states, _ = _recorded(asked)
     given(inputs_of(asked).rig, reference_row(asked.reference), states, inputs)
-    tables = tables_of(asked)
     outputs = np.empty((len(inputs), OUTPUTS))
     answered(tables.prepared, tables.predicts, inputs, outputs)
     return Vectors(inputs, outputs)
