@@ -41,7 +41,9 @@ def export(session: Session, pool: Pool) -> APIRouter:
 
     @router.post(
         "/export",
-        openapi_extra={"requestBody": {"content": {"application/json": {"schema": {"type": "object", "title": "Scenario"}}}}},
+        openapi_extra={
+            "requestBody": {"content": {"application/json": {"schema": {"type": "object", "title": "Scenario"}}}}
+        },
     )
     async def of_scenario(request: Request, form: Form = "json") -> Response:
         """Return the controller of a scenario: as JSON, for MATLAB, or as C source with test vectors."""

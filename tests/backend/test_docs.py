@@ -11,6 +11,9 @@ from typer.testing import CliRunner
 from backend.cli import app
 from backend.settings import Settings
 from vssea_core.channels import CHANNELS, LIMITS
+from vssea_core.export.bundle import all_files
+from vssea_core.export.ticks import INPUT_UNITS, OUTPUT_UNITS
+from vssea_core.scenarios import NOMINAL
 
 DOCS = Path(__file__).parents[2] / "docs"
 PROTOCOL = (DOCS / "protocol.md").read_text("utf-8")
@@ -83,3 +86,21 @@ def test_every_channel_and_limit_is_listed_in_order() -> None:
     assert [[cell.strip("`") for cell in row] for row in limits] == [
         [str(limit.bit), limit.name, limit.sentence] for limit in LIMITS
     ]
+
+
+def test_every_input_and_output_of_the_exported_controller_is_listed_in_order() -> None:
+    text = (DOCS / "export.md").read_text("utf-8")
+    for heading, units in (
+        ("## Columns", INPUT_UNITS),
+        ("| input | unit |", INPUT_UNITS),
+        ("| `next_r_ms2`", OUTPUT_UNITS),
+    ):
+        rows = {row[0].strip("`"): row[1] for row in table(text, heading)}
+        assert list(rows.items()) == list(units.items())
+
+
+def test_every_file_of_an_export_is_listed() -> None:
+    listed = [name for row in table((DOCS / "export.md").read_text("utf-8"), "# The tuned") for name in quoted(row[0])]
+    assert {name.removeprefix("vssea_controller") for name in all_files(NOMINAL)} == {
+        name.removeprefix("vssea_controller") for name in listed
+    }

@@ -22,7 +22,9 @@ DELAYED = Timing(compute_delay_samples=1)
 def tuned(base: Scenario = NOMINAL, timing: Timing | None = None, **tuning: Any) -> Scenario:
     """The scenario with other parts of the tuning."""
     changed = base.tuning.model_copy(update=tuning)
-    return base.model_copy(update={"tuning": Tuning.model_validate(changed.model_dump()), "timing": timing or base.timing})
+    return base.model_copy(
+        update={"tuning": Tuning.model_validate(changed.model_dump()), "timing": timing or base.timing}
+    )
 
 
 TUNINGS: dict[str, Scenario] = {

@@ -17,7 +17,8 @@ def as_mat(numbers: Document) -> bytes:
     A list over the stiffness of n rows has that axis last: K is (4, n), A (3, 3, n) or, of one row, (4, 1) and (3, 3).
     """
     file = io.BytesIO()
-    scipy.io.savemat(file, {"controller": _struct(numbers, rows_last=False)}, oned_as="column")
+    held = {"controller": _struct(numbers, rows_last=False)}
+    scipy.io.savemat(file, held, oned_as="column")  # type: ignore[arg-type]  # it takes open files too
     return file.getvalue()
 
 

@@ -150,9 +150,7 @@ def _stiffness_loop(legend: Legend, scenario: Scenario, tables: Tables) -> None:
     law, loop = tables.law, scenario.tuning.stiffness_loop
     form = "Eq. (19) with what it lacks: tau_ms = J_ms (r'' + d_ms) + K_p (r - theta_ms) + K_d (r' - omega_ms) + b_ms r' + tau_back"
     legend.put("stiffness_loop.K_p", law.stiffness_inertia * law.stiffness_p, "N m/rad", form)
-    legend.put(
-        "stiffness_loop.K_d", law.stiffness_inertia * law.stiffness_d - law.stiffness_damping, "N m s/rad", form
-    )
+    legend.put("stiffness_loop.K_d", law.stiffness_inertia * law.stiffness_d - law.stiffness_damping, "N m s/rad", form)
     legend.put("stiffness_loop.w2", law.stiffness_p, "1/s^2", "w^2 = K_p / J_ms")
     legend.put("stiffness_loop.two_zeta_w", law.stiffness_d, "1/s", "2 zeta w = (K_d + b_ms) / J_ms")
     legend.put(

@@ -23,7 +23,13 @@ from vssea_core.export.ticks import (
     given,
 )  # fmt: skip
 from vssea_core.scenario import Scenario
-from vssea_core.signals.documents import ConstantDisturbance, Disturbances, MoveReference, MoveStiffness, SineDisturbance
+from vssea_core.signals.documents import (
+    ConstantDisturbance,
+    Disturbances,
+    MoveReference,
+    MoveStiffness,
+    SineDisturbance,
+)
 from vssea_core.signals.references import reference_row
 from vssea_core.signals.stiffness import slew_row
 from vssea_core.simulation.kernel import RUNNING, run
