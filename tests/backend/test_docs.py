@@ -90,11 +90,7 @@ def test_every_channel_and_limit_is_listed_in_order() -> None:
 
 def test_every_input_and_output_of_the_exported_controller_is_listed_in_order() -> None:
     text = (DOCS / "export.md").read_text("utf-8")
-    for heading, units in (
-        ("## Columns", INPUT_UNITS),
-        ("| input | unit |", INPUT_UNITS),
-        ("| `next_r_ms2`", OUTPUT_UNITS),
-    ):
+    for heading, units in (("### Inputs", INPUT_UNITS), ("### Outputs", OUTPUT_UNITS)):
         rows = {row[0].strip("`"): row[1] for row in table(text, heading)}
         assert list(rows.items()) == list(units.items())
 

@@ -22,10 +22,10 @@ def order_of_tick(tuning: Tuning, *, predicts: bool) -> list[str]:
         steps.append(
             "6. State one period ahead: one Runge-Kutta step of order 4 of J_l theta_l'' = tau_s - b_l omega_l - J_l d_l(t), "
             "J_e theta_e'' = tau_pending - tau_s - b_e omega_e - J_e d_e(t), with d(t) = d + d' t + d'' t^2/2 and "
-            "theta_ms(t) = measured theta_ms + omega_ms t + r_ms'' t^2/2, r_ms'' of now; tau_pending is the torque of the last tick, "
-            "after limits. The law below takes that state, d and d' of link and motor one period ahead, the measured theta_ms moved "
-            "likewise, and both references one period ahead; d_ms and tau_back stay those of now. Step 5 of the next tick goes on from "
-            "the state of now."
+            "theta_ms(t) = measured theta_ms + omega_ms t + r_ms'' t^2/2, r_ms'' of now; tau_pending is the torque of the last "
+            "tick, after limits. The law below takes that state, d and d' of link and motor one period ahead, the measured "
+            "theta_ms moved likewise, and both references one period ahead; d_ms and tau_back stay those of now. Step 5 of the "
+            "next tick goes on from the state of now."
         )
     steps += [
         f"{len(steps) + 1}. Law, with tau_s and k = Y_tau cos(delta/2)/(2 theta_ms^3) at the estimated theta_e - theta_l and the "

@@ -8,7 +8,7 @@ from vssea_core.actuator.sensors import Measurement, measure
 from vssea_core.compiled import entry, inlined
 from vssea_core.control.law import StiffnessTarget, Target, act
 from vssea_core.control.observer import Memory, observe
-from vssea_core.control.packing import MEMORY_SIZE, ROW, loaded_memory, loaded_prepared, take_row
+from vssea_core.control.packing import MEMORY_SIZE, ROW, is_scheduled, loaded_memory, loaded_prepared, take_row
 from vssea_core.control.prediction import predicted
 from vssea_core.signals.references import reference_at
 from vssea_core.simulation.kernel import gains_at
@@ -71,32 +71,35 @@ def given(rig_row, reference, states, inputs):
 def answered(prepared, predicts, inputs, outputs):
     """Run the tick from its first over `inputs` (n, INPUTS) and write what it answers into `outputs` (n, OUTPUTS)."""
     row = np.empty(ROW)
-    slewed = np.empty(1)
+    start = inputs[:, STIFFNESS_AT]
     memory = loaded_memory(np.zeros(MEMORY_SIZE))
+    scheduled = is_scheduled(prepared)
     twisting = 0.0
-    at = -1.0
-    for i in range(inputs.shape[0]):
-        x = inputs[i]
-        slewed[0] = x[STIFFNESS_AT]
-        if gains_at(memory, slewed) != at:
-            at = gains_at(memory, slewed)
-            take_row(prepared, at, row)
+    done = 0
+    while done < inputs.shape[0]:
+        at = gains_at(memory, start)
+        take_row(prepared, at, row)
         tuning = loaded_prepared(prepared, row)
-        if x[TORQUES_AT + 3] == 0.0:  # the integral goes on where no limit cut the last torque
-            memory = Memory(memory.link, memory.motor, memory.stiffness, memory.spring, twisting)
-        memory = observe(tuning, memory, measurement(x), x[TORQUES_AT], x[TORQUES_AT + 1])
-        if predicts:
-            ahead = predicted(tuning.law, memory, x[TORQUES_AT + 2], x[STIFFNESS_AT + 2])
-            terms = act(tuning.law, ahead, target(x, REFERENCES_AT + 5), stiffness_target(x, STIFFNESS_AT + 3))
-        else:
-            terms = act(tuning.law, memory, target(x, REFERENCES_AT), stiffness_target(x, STIFFNESS_AT))
-        twisting = terms.twisting
-        y = outputs[i]
-        y[0], y[1] = terms.motor_torque, terms.stiffness_torque
-        y[2], y[3], y[4], y[5] = terms.e1, terms.e2, terms.e3, terms.e4
-        y[6], y[7] = terms.sigma, terms.snap
-        y[8], y[9], y[10] = memory.link.d, memory.link.d1, memory.link.d2
-        y[11], y[12], y[13] = memory.motor.d, memory.motor.d1, memory.motor.d2
-        y[14] = memory.stiffness.d
-        y[15], y[16], y[17] = memory.link.omega, memory.motor.omega, memory.stiffness.omega
-        y[18] = memory.twisting
+        for i in range(done, inputs.shape[0]):
+            if scheduled and gains_at(memory, start) != at:
+                break
+            x = inputs[i]
+            if x[TORQUES_AT + 3] == 0.0:  # the integral goes on where no limit cut the last torque
+                memory = Memory(memory.link, memory.motor, memory.stiffness, memory.spring, twisting)
+            memory = observe(tuning, memory, measurement(x), x[TORQUES_AT], x[TORQUES_AT + 1])
+            if predicts:
+                ahead = predicted(tuning.law, memory, x[TORQUES_AT + 2], x[STIFFNESS_AT + 2])
+                terms = act(tuning.law, ahead, target(x, REFERENCES_AT + 5), stiffness_target(x, STIFFNESS_AT + 3))
+            else:
+                terms = act(tuning.law, memory, target(x, REFERENCES_AT), stiffness_target(x, STIFFNESS_AT))
+            twisting = terms.twisting
+            y = outputs[i]
+            y[0], y[1] = terms.motor_torque, terms.stiffness_torque
+            y[2], y[3], y[4], y[5] = terms.e1, terms.e2, terms.e3, terms.e4
+            y[6], y[7] = terms.sigma, terms.snap
+            y[8], y[9], y[10] = memory.link.d, memory.link.d1, memory.link.d2
+            y[11], y[12], y[13] = memory.motor.d, memory.motor.d1, memory.motor.d2
+            y[14] = memory.stiffness.d
+            y[15], y[16], y[17] = memory.link.omega, memory.motor.omega, memory.stiffness.omega
+            y[18] = memory.twisting
+            done += 1

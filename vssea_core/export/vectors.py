@@ -121,9 +121,9 @@ def _recorded(scenario: Scenario) -> tuple[Numbers, Numbers, Numbers]:
         inputs[i, TORQUES_AT + 2], inputs[i, TORQUES_AT + 3] = state[PENDING], limited
         inputs[i, STIFFNESS_AT : STIFFNESS_AT + 3] = state[SLEWED + 1 : SLEWED + 4]
         _, end = run(terms.rig, prepared, prepared, reference, slew, *loads, True, 1.0, state, i, 1, rows[i : i + 1])
-        if end != RUNNING:
-            return inputs[:i], states[:i], rows[:i]
         inputs[i, STIFFNESS_AT + 3 : STIFFNESS_AT + 6] = state[SLEWED + 1 : SLEWED + 4]
+        if end != RUNNING:
+            return inputs[: i + 1], states[: i + 1], rows[: i + 1]
         limited = bool(int(rows[i, INDEX["limits"]]) & (PEAK | CONTINUOUS | SPEED))
     return inputs, states, rows
 
