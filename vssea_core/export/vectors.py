@@ -37,7 +37,7 @@ from vssea_core.simulation.state import APPLIED, PENDING, PLANT, SLEWED, equilib
 
 Numbers = NDArray[np.float64]
 TICKS = 300
-SATURATED_SHARE = 0.6
+SATURATED_SHARE = 0.8
 """Share of the largest torque asked for to which the exercise limits the motor, so that the limit certainly acts."""
 
 
@@ -57,15 +57,22 @@ def exercise(scenario: Scenario) -> Scenario:
     moving = _moving(scenario)
     _, _, rows = _recorded(moving)
     motor, demand = moving.actuator.motor, np.abs(rows[:, INDEX["motor_torque_demand"]])
-    peak = min(motor.peak_torque, max(0.1, SATURATED_SHARE * float(np.max(demand))))
+    holding = 1.2 * _load(scenario)
+    peak = min(motor.peak_torque, max(holding, SATURATED_SHARE * float(np.max(demand))))
     weak = {"peak_torque": peak, "continuous_torque": min(peak, motor.continuous_torque)}
     actuator = moving.actuator.model_copy(update={"motor": motor.model_copy(update=weak)})
     return moving.model_copy(update={"actuator": actuator})
 
 
+def _load(scenario: Scenario) -> float:
+    """Return a torque [N m] on the link that spring and motor hold with ease."""
+    actuator = scenario.actuator
+    return min(0.5, 0.05 * scenario.stiffness_reference.stiffness, 0.1 * actuator.motor.peak_torque)
+
+
 def _moving(scenario: Scenario) -> Scenario:
     """Return the scenario with a move of the link and one of the stiffness, and loads on link and motor."""
-    t, origin = scenario.timing.sample_time_s, scenario.initial.link_position
+    t, origin, load = scenario.timing.sample_time_s, scenario.initial.link_position, _load(scenario)
     before, mechanism = scenario.stiffness_reference.stiffness, scenario.actuator.stiffness
     after = 0.5 * before if 0.5 * before >= mechanism.softest else min(2.0 * before, mechanism.stiffest)
     return Scenario(
@@ -87,7 +94,7 @@ def _moving(scenario: Scenario) -> Scenario:
             stiffness=before, target=after, start_s=60.0 * t, duration_s=max(0.1, 100.0 * t)
         ),
         disturbances=Disturbances(
-            link=(ConstantDisturbance(torque=2.0, start_s=100.0 * t),),
+            link=(ConstantDisturbance(torque=load), ConstantDisturbance(torque=load, start_s=100.0 * t)),
             motor=(SineDisturbance(amplitude=3.0, frequency_hz=5.0, start_s=40.0 * t),),
         ),
         duration_s=TICKS * t,
@@ -95,7 +102,7 @@ def _moving(scenario: Scenario) -> Scenario:
 
 
 def vectors_of(scenario: Scenario) -> Vectors:
-    """Return the vectors of the scenario's tuning: first tick, both moves, loads, and a motor torque that is limited.
+    """Return the vectors of the scenario's tuning: first tick under load, both moves, and a motor torque that is limited.
 
     Fewer than TICKS if the exercise runs away. Raises ValueError if a design has no solution.
     """
