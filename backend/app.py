@@ -13,6 +13,7 @@ from starlette.staticfiles import StaticFiles
 
 from backend.api.analysis import analysis
 from backend.api.documentation import documentation
+from backend.api.export import export
 from backend.api.guard import Guard
 from backend.api.live import live
 from backend.api.problems import add_problem_handlers
@@ -64,6 +65,7 @@ def create_app(settings: Settings) -> FastAPI:
     add_problem_handlers(app)
     app.include_router(resources(session, pool, store, answers.name))
     app.include_router(analysis(session, pool, tasks, answers.name))
+    app.include_router(export(session, pool))
     app.include_router(live(session))
     app.include_router(documentation())
     # The guard has checked Host and Origin of every websocket before this.

@@ -16,6 +16,7 @@ from backend.telemetry.ring import COLUMNS, EPOCH, PERIOD_S, WIDTH, Piece
 from vssea_core.analysis.refusal import unstable_because
 from vssea_core.channels import CHANNELS, INDEX
 from vssea_core.control.tuning import Tuning
+from vssea_core.export import bundle
 from vssea_core.scenario import Scenario, after_changes
 from vssea_core.simulation.metrics import limit_shares, metrics
 from vssea_core.simulation.plan import PreparedRun
@@ -82,6 +83,25 @@ def simulate_to_file(scenario: Scenario, form: str, every: int, allow_unstable: 
     with tempfile.NamedTemporaryFile(dir=folder, delete=False) as file:
         file.write(content)
     return media_type, file.name
+
+
+def export_controller(scenario: Scenario, form: str) -> tuple[str, bytes]:
+    """Return media type and body of the scenario's controller: form `json`, `mat`, or `c`, a zip of the C files with vectors.
+
+    Raises ValueError if the tuning's loop is unstable by its own model or a design has no solution.
+    """
+    refuse_unstable(scenario)
+    if form == "json":
+        return "application/json", bundle.json_file(scenario)
+    if form == "mat":
+        return "application/x-matlab-data", bundle.mat_file(scenario)
+    return "application/zip", bundle.zipped(bundle.c_files(scenario))
+
+
+def export_all(scenario: Scenario) -> dict[str, bytes]:
+    """Return all files of an export by name. Raises ValueError as `export_controller`."""
+    refuse_unstable(scenario)
+    return bundle.all_files(scenario)
 
 
 def summary(scenario: Scenario, trajectory: Trajectory) -> dict[str, Any]:

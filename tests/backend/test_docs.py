@@ -12,6 +12,9 @@ from typer.testing import CliRunner
 from backend.cli import app
 from backend.settings import Settings
 from vssea_core.channels import CHANNELS, LIMITS
+from vssea_core.export.bundle import all_files
+from vssea_core.export.ticks import INPUT_UNITS, OUTPUT_UNITS
+from vssea_core.scenarios import NOMINAL
 
 DOCS = Path(__file__).parents[2] / "docs"
 PROTOCOL = (DOCS / "protocol.md").read_text("utf-8")
@@ -99,3 +102,17 @@ def test_every_function_and_test_that_the_theory_names_exists() -> None:
         file, _, function = place.partition("::")
         source = (DOCS.parent / file).read_text("utf-8")
         assert f"def {function}(" in source or not function, place
+
+
+def test_every_input_and_output_of_the_exported_controller_is_listed_in_order() -> None:
+    text = (DOCS / "export.md").read_text("utf-8")
+    for heading, units in (("### Inputs", INPUT_UNITS), ("### Outputs", OUTPUT_UNITS)):
+        rows = {row[0].strip("`"): row[1] for row in table(text, heading)}
+        assert list(rows.items()) == list(units.items())
+
+
+def test_every_file_of_an_export_is_listed() -> None:
+    listed = [name for row in table((DOCS / "export.md").read_text("utf-8"), "# The tuned") for name in quoted(row[0])]
+    assert {name.removeprefix("vssea_controller") for name in all_files(NOMINAL)} == {
+        name.removeprefix("vssea_controller") for name in listed
+    }
