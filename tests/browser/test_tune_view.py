@@ -60,6 +60,7 @@ def test_a_slider_changes_the_running_loop(running: Server, open_page: OpenPage)
 
 def test_dragging_with_the_mouse_changes_the_torque(running: Server, open_page: OpenPage) -> None:
     # A step meets the law at once: its first torque is proportional to the fourth power of the pole.
+    running.post("/api/session/set_disturbances", {"replace": {}}).raise_for_status()
     running.post("/api/session/set_reference", {"replace": {"kind": "step", "target": 0.02, "dwell_s": 1.0}})
     page = open_page(running)
     peak = "Math.max(...Array.from(window.vssea.store.column('motor_torque')).slice(-1500).map(Math.abs))"
