@@ -1,6 +1,8 @@
 """Analyses as the workers run them: a request in, JSON out."""
 
 import json
+import math
+from collections.abc import Sequence
 from typing import Any
 
 from backend.compute.requests import BandwidthRequest, LoopRequest, MapRequest, WorstCaseRequest
@@ -9,6 +11,7 @@ from vssea_core.actuator.sensors import encoders
 from vssea_core.analysis.axes import changed
 from vssea_core.analysis.bandwidth_sets import LeastMargins, bandwidth_sets
 from vssea_core.analysis.certify import certify
+from vssea_core.analysis.error_bound import error_bound
 from vssea_core.analysis.loop import loop_model
 from vssea_core.analysis.maps import map_axis, margin_map, stability_map
 from vssea_core.analysis.noise import observer_figures
@@ -19,6 +22,7 @@ from vssea_core.analysis.sensitivities import sensitivities
 from vssea_core.analysis.warning import warning
 from vssea_core.analysis.worst_case import worst_case
 from vssea_core.scenario import Scenario
+from vssea_core.signals.documents import LinkDisturbance
 
 
 def operating_point(scenario: Scenario, stiffness: float | None = None, plant: str = "model") -> OperatingPoint:
@@ -89,6 +93,7 @@ def analyse_loop(asked: LoopRequest) -> bytes:
         "robustness": found.document(),
         "warning": danger.document() if danger else None,
         "true": _true_factors(scenario),
+        "error_bound": _error_bound(scenario, point, asked),
         "sensitivities": None,
         "figures": None,
     }
@@ -96,6 +101,27 @@ def analyse_loop(asked: LoopRequest) -> bytes:
         report["sensitivities"] = sensitivities(loop).document()
         report["figures"] = observer_figures(loop, encoders(scenario.sensors, scenario.actuator.motor)).document()
     return _json(report)
+
+
+def _error_bound(scenario: Scenario, point: OperatingPoint, asked: LoopRequest) -> dict[str, Any] | None:
+    link, motor = scenario.disturbances.link, scenario.disturbances.motor
+    found = error_bound(
+        point.tuning,
+        point.period_s,
+        point.stiffness,
+        jerk_of_sines(link) if asked.link_jerk is None else asked.link_jerk,
+        jerk_of_sines(motor) if asked.motor_jerk is None else asked.motor_jerk,
+    )
+    return found.document() if found else None
+
+
+def jerk_of_sines(terms: Sequence[LinkDisturbance]) -> float:
+    """Return the largest third derivative [N m/s^3] that the sines of a disturbance can add up to."""
+    jerk = 0.0
+    for term in terms:
+        parts = (term,) if term.kind == "sine" else term.components if term.kind == "multisine" else ()
+        jerk += sum(part.amplitude * (2.0 * math.pi * part.frequency_hz) ** 3 for part in parts)
+    return jerk
 
 
 def analysis_task(asked: MapRequest | BandwidthRequest | WorstCaseRequest, progress: Progress) -> bytes:

@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import tempfile
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from vssea_core.channels import CHANNELS, INDEX
 from vssea_core.control.tuning import Tuning
 from vssea_core.export import bundle
 from vssea_core.scenario import Scenario, after_changes
+from vssea_core.simulation.events import event_metrics
 from vssea_core.simulation.metrics import limit_shares, metrics
 from vssea_core.simulation.plan import PreparedRun
 from vssea_core.simulation.run import prepare_scenario, simulate
@@ -112,6 +114,7 @@ def summary(scenario: Scenario, trajectory: Trajectory) -> dict[str, Any]:
         "ending": trajectory.ending,
         "metrics": metrics(trajectory.rows),
         "limits": limit_shares(trajectory.rows),
+        "events": [asdict(event) for event in event_metrics(scenario, trajectory.rows)],
     }
 
 

@@ -27,6 +27,13 @@ class LoopRequest(_Asked):
     plant: Literal["model", "actuator"] = Field(
         "model", description="model: the plant the controller believes in. actuator: the scenario's true one."
     )
+    link_jerk: float | None = Field(
+        None, ge=0.0, le=1e9, strict=True,
+        description="Bound on d³τ/dt³ of the link's disturbance, N·m/s³; that of the scenario's sines if there is none.",
+    )  # fmt: skip
+    motor_jerk: float | None = Field(
+        None, ge=0.0, le=1e9, strict=True, description="The same for the motor's disturbance."
+    )
 
 
 class AxisRequest(_Asked):

@@ -26,9 +26,9 @@ from backend.reports.style import (
     TRUE_LINE,
 )
 from vssea_core.paper.claim import Run, Runs
-from vssea_core.paper.disturbance_rates import load_and_rates
 from vssea_core.paper.measures import LINK_ESTIMATES, MOTOR_ESTIMATES
 from vssea_core.paper.scenarios import DISTURBED_S
+from vssea_core.signals.disturbance_rates import load_and_rates
 
 UNTIL_S = 10.0
 MARKS = (DISTURBED_S,)

@@ -11,16 +11,11 @@ from scipy.signal import lti
 from vssea_core.control.tuning import Baseline, NoObserver, StateFeedback
 from vssea_core.paper.claim import Claim, Number, Run, Runs, Verdict, judge, run_all, with_unit
 from vssea_core.paper.claims import CLAIMS
-from vssea_core.paper.disturbance_rates import load_and_rates
 from vssea_core.paper.measures import LINK_ESTIMATES, MOTOR_ESTIMATES, compliance, estimate_error, rms_error, settled
 from vssea_core.paper.scenarios import paper_scenarios
 from vssea_core.scenario import Scenario
 from vssea_core.signals.documents import (
     ConstantDisturbance,
-    MultisineDisturbance,
-    PendulumDisturbance,
-    SineDisturbance,
-    TorqueComponent,
 )
 
 SCENARIOS = paper_scenarios()
@@ -193,23 +188,3 @@ def test_inside_its_layer_the_sliding_mode_is_the_state_feedback_with_the_gain_o
     gentle = changed(SCENARIOS["fig4b_tracking"], "tuning.controller.switching_gain", 1e4)
     runs = run_all({"a": SCENARIOS["fig4a_tracking"], "b": gentle}, lambda share, name: None)
     assert rms_error(runs["b"]) == pytest.approx(rms_error(runs["a"]), rel=1e-2)
-
-
-def test_rates_are_the_derivatives_of_the_load() -> None:
-    terms = (
-        ConstantDisturbance(torque=3.0, start_s=0.5),
-        SineDisturbance(amplitude=2.0, frequency_hz=1.5, phase=0.3, start_s=0.2, end_s=2.0),
-        MultisineDisturbance(components=(TorqueComponent(amplitude=1.0, frequency_hz=0.7, phase=0.1),)),
-    )
-    time = np.linspace(0.6, 1.9, 2001)
-    load, rate, acceleration = load_and_rates(terms, time)
-    step = time[1] - time[0]
-    assert np.allclose(np.gradient(load, step)[5:-5], rate[5:-5], atol=1e-3)
-    assert np.allclose(np.gradient(rate, step)[5:-5], acceleration[5:-5], atol=1e-2)
-    before, after = load_and_rates(terms[1:2], np.array([0.1, 2.1]))[0]
-    assert before == after == 0.0
-
-
-def test_a_load_that_depends_on_the_link_has_no_rates_here() -> None:
-    with pytest.raises(ValueError, match="a pendulum disturbance has no rates here; expected constant, sine"):
-        load_and_rates((PendulumDisturbance(),), np.zeros(1))

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from vssea_core.control.chosen_gains import chosen_gains
 from vssea_core.control.linear_model import LinearModel, state_space
 from vssea_core.paper.claim import Run
-from vssea_core.paper.disturbance_rates import load_and_rates
 from vssea_core.paper.scenarios import DISTURBED_S, SET_POINT, UNDISTURBED_S
+from vssea_core.signals.disturbance_rates import load_and_rates
 from vssea_core.simulation.settling import recovery_time
 from vssea_core.simulation.step_response import StepMetrics, step_metrics
 
