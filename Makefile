@@ -9,7 +9,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 
 .DELETE_ON_ERROR:
-.PHONY: help run test lint lock bench clean environment test-environment chromium FORCE
+.PHONY: help run test lint lock bench clean environment test-environment chromium compiler FORCE
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-6s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -21,7 +21,7 @@ ADDRESS := $(if $(filter command,$(firstword $(origin HOST))),--host $(HOST)) \
 run: environment ## start the dashboard
 	@exec $(BIN)/vssea serve $(strip $(ADDRESS))
 
-test: test-environment chromium ## run the tests
+test: test-environment chromium compiler ## run the tests
 	@$(BIN)/python -m pytest $(ARGS)
 
 lint: test-environment ## check style, types and layers
@@ -85,3 +85,12 @@ chromium:
 	fi; \
 	$(PYTHON) tests/chromium.py >/dev/null || { \
 	    echo "The browser tests need Chromium or Chrome: install one, or name it with CHROMIUM=/path/to/chromium." >&2; exit 1; }
+
+compiler:
+	@$(PYTHON) tests/compiler.py >/dev/null && exit 0; \
+	if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	    echo "Installing a C compiler for the tests of the exported controller"; \
+	    apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends gcc libc6-dev >/dev/null; \
+	fi; \
+	$(PYTHON) tests/compiler.py >/dev/null || { \
+	    echo "The tests of the exported controller need a C compiler: install gcc or clang, or name one with CC=/path/to/cc." >&2; exit 1; }

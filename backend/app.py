@@ -11,7 +11,9 @@ from fastapi import FastAPI
 from starlette.middleware import Middleware
 from starlette.staticfiles import StaticFiles
 
+from backend.api.analysis import analysis
 from backend.api.documentation import documentation
+from backend.api.export import export
 from backend.api.guard import Guard
 from backend.api.live import live
 from backend.api.problems import add_problem_handlers
@@ -23,6 +25,7 @@ from backend.scene.process import SceneProcess
 from backend.scene.relay import scene_routes
 from backend.session.session import Session
 from backend.settings import Settings
+from backend.tasks.tasks import Tasks
 from vssea_core import __version__
 
 WEB_NICENESS = -10
@@ -33,6 +36,7 @@ def create_app(settings: Settings) -> FastAPI:
     """Return the whole application; its processes start and end with it."""
     store = PresetStore(settings.data_dir)
     pool = Pool()
+    tasks = Tasks(pool.tasks)
     session = Session(settings, pool, store)
     scene = SceneProcess(session.ring_name)
     answers = tempfile.TemporaryDirectory(prefix="vssea-")
@@ -48,6 +52,7 @@ def create_app(settings: Settings) -> FastAPI:
         yield
         await scene.stop()
         await session.close()
+        await tasks.stop()
         await pool.stop()
         store.close()
         answers.cleanup()
@@ -59,6 +64,8 @@ def create_app(settings: Settings) -> FastAPI:
     )  # fmt: skip
     add_problem_handlers(app)
     app.include_router(resources(session, pool, store, answers.name))
+    app.include_router(analysis(session, pool, tasks, answers.name))
+    app.include_router(export(session, pool))
     app.include_router(live(session))
     app.include_router(documentation())
     # The guard has checked Host and Origin of every websocket before this.

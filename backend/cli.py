@@ -89,6 +89,59 @@ def simulate(
     typer.echo(json.dumps(json.loads(figures), indent=2, ensure_ascii=False))
 
 
+@app.command()
+def export(
+    file: Annotated[
+        str, typer.Argument(help="Scenario as JSON: a file, - for standard input, or a ready scenario's name.")
+    ],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write to; it is made if it is not there.")],
+) -> None:
+    """Export a scenario's controller: numbers as JSON and for MATLAB, C source with test vectors."""
+    from backend.compute.jobs import export_all
+    from backend.problem import from_validation
+    from vssea_core.scenario import Scenario
+    from vssea_core.scenarios import SCENARIOS
+
+    try:
+        files = export_all(SCENARIOS[file] if file in SCENARIOS else Scenario.model_validate_json(_read(file)))
+    except ValidationError as error:
+        _refuse(from_validation(error, Scenario).detail)
+    except ValueError as refusal:
+        _refuse(str(refusal))
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        _refuse(f"{output} cannot be made: {error}")
+    for name, content in files.items():
+        _write(output / name, content)
+        typer.echo(output / name)
+
+
+@app.command()
+def paper(
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder for the report; made if it is missing.")
+    ] = Path("paper-report"),
+) -> None:
+    """Check the paper: draw Figs. 2 to 4 from simulations and test each sentence of its results.
+
+    Exit status 1 if a claim fails.
+    """
+    from rich.console import Console
+
+    from backend.reports.paper import paper_report
+    from backend.reports.terminal import claims_shown, with_progress
+
+    try:
+        report = with_progress(lambda tell: paper_report(str(output), tell))
+    except OSError as error:
+        _refuse(f"{output} cannot be written: {error}; expected a folder of your own")
+    Console().print(claims_shown(report))
+    typer.echo(f"{report['statement']}\n{output / 'index.html'}")
+    if not report["passed"]:
+        raise typer.Exit(1)
+
+
 def _read(file: str) -> str:
     try:
         return sys.stdin.read() if file == "-" else Path(file).read_text("utf-8")

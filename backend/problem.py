@@ -1,10 +1,12 @@
 """The one error shape, RFC 9457 problem details, and how a refused value becomes a sentence."""
 
 from dataclasses import dataclass, field
-from typing import Any, get_args
+from typing import Any
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
+
+from vssea_core.changes import models_of
 
 
 @dataclass(frozen=True)
@@ -117,13 +119,6 @@ def _walk(model: type[BaseModel], location: tuple[int | str, ...]) -> tuple[list
             here = info.annotation if info else None
             known = [n for m in models_of(here) for n in m.model_fields] or known
     return path, info, known
-
-
-def models_of(annotation: Any) -> list[type[BaseModel]]:
-    """Return the models that an annotation names, such as the alternatives of a union."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return [annotation]
-    return [m for argument in get_args(annotation) for m in models_of(argument)]
 
 
 def _worded(value: Any) -> str:

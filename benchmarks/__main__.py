@@ -11,6 +11,7 @@ BENCHMARKS = {
         "time of stability and margin maps and of the report on one tuning, beside python-control",
     ),
     "stability": ("benchmarks.stability", "linear predictions against nonlinear simulations at 400 random points"),
+    "export": ("benchmarks.export", "one tick of the exported C controller, beside the compiled tick"),
     "start": ("benchmarks.start", "from starting the server to something moving on the page"),
     "latency": ("benchmarks.latency", "slider to changed torque, STOP to zero torque"),
     "loop": ("benchmarks.loop", "the 1 kHz loop for two minutes: lateness, overruns, lost samples, processor time"),

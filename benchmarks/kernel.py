@@ -47,7 +47,7 @@ def kernel_of(scenario: Scenario) -> Callable[[], object]:
     prepared, reference = prepare(scenario.tuning, period), reference_row(scenario.reference)
     slew = slew_row(scenario.stiffness_reference, scenario.tuning, scenario.actuator.stiffness, period)
     start, rows = equilibrium_state(scenario), np.empty((SAMPLES, len(CHANNELS)))
-    terms = inputs.link_terms, inputs.motor_terms
+    terms = inputs.link_terms, inputs.motor_terms, inputs.stiffness_terms
 
     def work() -> object:
         state = start.copy()

@@ -1,6 +1,7 @@
 import pytest
 
 from tests.chromium import find_chromium
+from tests.compiler import find_compiler
 
 
 @pytest.fixture(scope="session")
@@ -15,4 +16,13 @@ def chromium_path() -> str:
     path = find_chromium()
     if path is None:
         pytest.fail("No Chromium found: run `make test`, which installs one, or set CHROMIUM to its path.")
+    return path
+
+
+@pytest.fixture(scope="session")
+def c_compiler() -> str:
+    """The C compiler that `make test` found or installed."""
+    path = find_compiler()
+    if path is None:
+        pytest.fail("No C compiler found: run `make test`, which installs one, or set CC to its path.")
     return path

@@ -94,7 +94,10 @@ def test_a_wheel_holds_packages_page_and_libraries_and_nothing_else(tmp_path: Pa
     subprocess.run(build, cwd=ROOT, check=True, capture_output=True)
     (wheel,) = tmp_path.glob("*.whl")
     held = set(zipfile.ZipFile(wheel).namelist())
-    assert held >= {f"frontend_static/vendor/{name}" for name in VENDOR_FILES} | {"backend/cli.py"}
+    assert held >= {f"frontend_static/vendor/{name}" for name in VENDOR_FILES} | {
+        "backend/cli.py",
+        "vssea_core/export/c/vssea_controller.c",
+    }
     own = {"vssea_core", "backend", "frontend_static", f"vssea-{PROJECT['version']}.dist-info"}
     assert {name.split("/")[0] for name in held} == own
     assert not [name for name in held if "__pycache__" in name]

@@ -47,6 +47,9 @@ CHANNELS: tuple[Channel, ...] = (
     Channel("stiffness_motor_torque", "τ_ms", "N·m", "stiffness motor torque", "stiffness motor"),
     Channel("limits", "", "", "active limits (bits)", "state"),
     Channel("tuning_id", "", "", "tuning in force", "state"),
+    Channel("stiffness_motor_disturbance", "τ_ms,d", "N·m", "stiffness motor disturbance", "stiffness motor"),
+    Channel("link_disturbance_acceleration", "τ̂̈_l,d", "N·m/s²", "link estimate, acceleration", "disturbance"),
+    Channel("motor_disturbance_rate", "τ̂̇_e,d", "N·m/s", "motor estimate, rate", "disturbance"),
 )
 
 INDEX: dict[str, int] = {channel.name: column for column, channel in enumerate(CHANNELS)}

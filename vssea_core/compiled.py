@@ -43,3 +43,9 @@ def entry(function: Kernel) -> Kernel:
     """Compile a kernel that Python calls: arrays in and out, cached on disk, without the interpreter lock."""
     compiled: Kernel = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
     return compiled
+
+
+def called(function: Kernel) -> Kernel:
+    """Compile a part of a kernel that few runs need: a function of its own, so that the tick around it stays small."""
+    compiled: Kernel = numba.njit(error_model="numpy")(function)
+    return compiled

@@ -3,16 +3,20 @@
 It is what REST takes, what the command line reads, and what the live session runs. Imports no numba and no scipy.
 """
 
+import json
 from typing import Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, JsonValue, ValidationError, model_validator
 
 from vssea_core.actuator.parameters import Actuator, Sensors, Timing
-from vssea_core.control.tuning import Tuning, VelocityObserver
+from vssea_core.changes import UnknownPath, set_values
+from vssea_core.control.tuning import NoObserver, Tuning, VelocityObserver
 from vssea_core.fields import Part, parameter
 from vssea_core.signals.documents import ConstantStiffness, Disturbances, Reference, SineReference, StiffnessReference
 
 MAX_SAMPLES = 200_000
+CHANGEABLE = ("tuning", "reference", "stiffness_reference", "disturbances")
+"""Parts of the document that may change while it runs."""
 
 
 class Initial(Part):
@@ -30,6 +34,19 @@ class Initial(Part):
     )
 
 
+class TimedChange(Part):
+    """What changes at one instant of the run: paths of the scenario, with their new values."""
+
+    at_s: float = parameter(
+        5.0, "at", unit="s", low=0.0, high=1e4, typical=(0.0, 20.0), step=0.1,
+        meaning="Scenario time from which the change is in force; takes effect at the next tick.",
+    )  # fmt: skip
+    changes: dict[str, JsonValue] = Field(
+        default_factory=dict, max_length=64, title="changes",
+        description="Values by path, such as tuning.observer.bandwidth, stiffness_reference.stiffness or reference.kind.",
+    )  # fmt: skip
+
+
 class Scenario(Part):
     """One experiment, whole."""
 
@@ -42,9 +59,20 @@ class Scenario(Part):
     reference: Reference = SineReference()
     stiffness_reference: StiffnessReference = ConstantStiffness()
     disturbances: Disturbances = Disturbances()
+    sequence: tuple[TimedChange, ...] = Field((), max_length=32, title="sequence")
     initial: Initial = Initial()
     duration_s: float = parameter(
         10.0, "duration", unit="s", low=0.001, high=120.0, step=0.1, meaning="Length of a simulation."
+    )
+    seed: int = parameter(
+        0,
+        "seed",
+        unit="",
+        low=0,
+        high=2**31 - 1,
+        typical=(0, 1000),
+        step=1,
+        meaning="Of all noise: the same seed gives the same run.",
     )
 
     @model_validator(mode="after")
@@ -57,13 +85,51 @@ class Scenario(Part):
                 f"duration_s {self.duration_s:g} s is {samples:.0f} samples of {self.timing.sample_time_s:g} s; "
                 f"expected at most {MAX_SAMPLES}, so shorten it or lengthen timing.sample_time_s"
             )
+        after_changes(self)
         return self
+
+
+def after_changes(scenario: Scenario) -> list[tuple[float, Scenario]]:
+    """Return the scenario after each change of its sequence, with the time [s] from which it is in force, in order.
+
+    Raises ValueError for a path that may not change, is unknown, or gets a value out of range.
+    """
+    followers: list[tuple[float, Scenario]] = []
+    if not scenario.sequence:
+        return followers
+    document = scenario.model_dump(mode="json", exclude={"sequence"})
+    last_s = 0.0
+    for number, change in enumerate(scenario.sequence):
+        if change.at_s < last_s:
+            raise ValueError(
+                f"sequence.{number}.at_s {change.at_s:g} s is before the change ahead of it at {last_s:g} s"
+            )
+        last_s = change.at_s
+        for path in change.changes:
+            if path.split(".")[0] not in CHANGEABLE:
+                raise ValueError(
+                    f"sequence.{number} changes {path}; expected a path that starts with {', '.join(CHANGEABLE)}"
+                )
+        try:
+            set_values(document, Scenario, dict(change.changes))
+            followers.append((change.at_s, Scenario.model_validate_json(json.dumps(document))))
+        except UnknownPath as unknown:
+            raise ValueError(f"sequence.{number}: {unknown}") from unknown
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            place = ".".join(map(str, first["loc"]))
+            raise ValueError(f"sequence.{number}: {place} {first['msg'].removeprefix('Value error, ')}") from error
+    return followers
 
 
 def check_observer_fits(tuning: Tuning, sensors: Sensors) -> None:
     """Raise ValueError if the observer needs a velocity signal that the sensors do not give."""
     observer = tuning.observer
-    if isinstance(observer, VelocityObserver) and observer.velocity_source == "measured" and not sensors.velocities:
+    if (
+        isinstance(observer, VelocityObserver | NoObserver)
+        and observer.velocity_source == "measured"
+        and not sensors.velocities
+    ):
         raise ValueError(
             "tuning.observer.velocity_source is 'measured', but these sensors measure no velocities; "
             "choose the position observer, or velocity_source 'difference'"

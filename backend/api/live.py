@@ -42,8 +42,8 @@ class Page:
         self._next = 0
 
     def post(self, message: dict[str, Any]) -> None:
-        """Queue a message; of states and documents only the newest is kept."""
-        if message["type"] in ("state", "document"):
+        """Queue a message; of states, documents and margins only the newest is kept."""
+        if message["type"] in ("state", "document", "margins"):
             for queued in self._messages:
                 if queued["type"] == message["type"]:
                     self._messages.remove(queued)
@@ -72,7 +72,7 @@ class Page:
         hello = {
             "type": "hello", "protocol": 1, "run": session.run_id, "you": self.name, "version": __version__,
             "channels": [channel._asdict() for channel in CHANNELS], "snapshot": session.snapshot(),
-            "document": session.document(), "events": session.log.last(100),
+            "document": session.document(), "events": session.log.last(100), "margins": session.margins.newest,
         }  # fmt: skip
         with suppress(WebSocketDisconnect, RuntimeError, TimeoutError):
             await self._send(json.dumps(hello))

@@ -9,26 +9,45 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from backend.compute.analysis_jobs import analyse_loop, analysis_task, margins_of
+from backend.compute.report_jobs import paper_task
 from backend.telemetry.frames import frames
 from backend.telemetry.ring import COLUMNS, EPOCH, PERIOD_S, WIDTH, Piece
 from vssea_core.analysis.refusal import unstable_because
 from vssea_core.channels import CHANNELS, INDEX
-from vssea_core.control.prepared import prepare
 from vssea_core.control.tuning import Tuning
-from vssea_core.scenario import Scenario
+from vssea_core.export import bundle
+from vssea_core.scenario import Scenario, after_changes
 from vssea_core.simulation.metrics import limit_shares, metrics
-from vssea_core.simulation.run import simulate
+from vssea_core.simulation.plan import PreparedRun
+from vssea_core.simulation.run import prepare_scenario, simulate
 from vssea_core.simulation.trajectory import Trajectory
 
+__all__ = [
+    "LONG",
+    "analyse_loop",
+    "analysis_task",
+    "margins_of",
+    "paper_task",
+    "plan_run",
+    "simulate_scenario",
+    "simulate_to_file",
+]
 
-def prepare_tuning(scenario: Scenario) -> NDArray[np.float64]:
-    """Return the numbers of the scenario's tuning. Raises ValueError if its own sampled loop is unstable."""
+LONG = frozenset({"analysis_task", "paper_task"})
+"""Jobs that tell their progress and can be cancelled; see compute.worker."""
+
+
+def plan_run(scenario: Scenario) -> PreparedRun:
+    """Return the numbers of the scenario's tunings. Raises ValueError if a sampled loop is unstable by its own model."""
     refuse_unstable(scenario)
-    return prepare(scenario.tuning, scenario.timing.sample_time_s)
+    return prepare_scenario(scenario)
 
 
 def refuse_unstable(scenario: Scenario) -> None:
     """Raise ValueError with the reason and a remedy if the tuning is unstable at a stiffness the scenario commands."""
+    for _, after in after_changes(scenario):
+        refuse_unstable(after)
     reference = scenario.stiffness_reference
     asked = {reference.stiffness, reference.target} if reference.kind == "move" else {reference.stiffness}
     for stiffness in sorted(asked):
@@ -64,6 +83,25 @@ def simulate_to_file(scenario: Scenario, form: str, every: int, allow_unstable: 
     with tempfile.NamedTemporaryFile(dir=folder, delete=False) as file:
         file.write(content)
     return media_type, file.name
+
+
+def export_controller(scenario: Scenario, form: str) -> tuple[str, bytes]:
+    """Return media type and body of the scenario's controller: form `json`, `mat`, or `c`, a zip of the C files with vectors.
+
+    Raises ValueError if the tuning's loop is unstable by its own model or a design has no solution.
+    """
+    refuse_unstable(scenario)
+    if form == "json":
+        return "application/json", bundle.json_file(scenario)
+    if form == "mat":
+        return "application/x-matlab-data", bundle.mat_file(scenario)
+    return "application/zip", bundle.zipped(bundle.c_files(scenario))
+
+
+def export_all(scenario: Scenario) -> dict[str, bytes]:
+    """Return all files of an export by name. Raises ValueError as `export_controller`."""
+    refuse_unstable(scenario)
+    return bundle.all_files(scenario)
 
 
 def summary(scenario: Scenario, trajectory: Trajectory) -> dict[str, Any]:

@@ -2,6 +2,8 @@
 
 import asyncio
 import logging
+from collections.abc import Callable
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any
@@ -21,11 +23,18 @@ class JobFailedError(RuntimeError):
     """The worker died, ran out of time, or failed in a way that is not the user's doing."""
 
 
+class JobCancelledError(RuntimeError):
+    """The job was ended because it was no longer wanted."""
+
+
+Hearer = Callable[[float, str], None]
+
+
 class Worker:
     """One worker process with a queue of its own."""
 
-    def __init__(self, name: str, niceness: int = 10, entry: str = ENTRY) -> None:
-        self._name, self._niceness, self._entry = name, niceness, entry
+    def __init__(self, name: str, first_job: str, niceness: int = 10, entry: str = ENTRY) -> None:
+        self._name, self._first_job, self._niceness, self._entry = name, first_job, niceness, entry
         self._turn = asyncio.Lock()
         self._process: BaseProcess | None = None
         self._pipe: Connection
@@ -35,11 +44,23 @@ class Worker:
         async with self._turn:
             await self._ready()
 
-    async def run(self, job: str, *arguments: Any, time_limit_s: float = 60.0) -> Any:
-        """Return what `job` returns. Raises JobRefusedError or JobFailedError; a cancelled or overdue job ends with its process."""
+    async def run(
+        self, job: str, *arguments: Any, time_limit_s: float = 60.0, on_progress: Hearer | None = None
+    ) -> Any:
+        """Return what `job` returns; `on_progress` hears a share from 0 to 1 and words.
+
+        Raises JobRefusedError, JobFailedError or, after `end_job`, JobCancelledError. A cancelled or overdue job ends with
+        its process.
+        """
         async with self._turn:
             await self._ready()
-            return await self._answer((job, arguments), time_limit_s)
+            return await self._answer((job, arguments), time_limit_s, on_progress)
+
+    def end_job(self) -> None:
+        """Ask the long job that runs to end at its next progress; the process stays."""
+        if self._process is not None and self._turn.locked():
+            with suppress(OSError):
+                self._pipe.send(None)
 
     async def stop(self) -> None:
         """End the process."""
@@ -51,17 +72,26 @@ class Worker:
             return
         await self._end()
         self._pipe, theirs = CONTEXT.Pipe()
-        self._process = await asyncio.to_thread(started, self._name, self._entry, theirs, self._niceness)
+        self._process = await asyncio.to_thread(
+            started, self._name, self._entry, theirs, self._niceness, self._first_job
+        )
         theirs.close()
         await self._answer(None, START_LIMIT_S)
 
-    async def _answer(self, job: tuple[str, tuple[Any, ...]] | None, time_limit_s: float) -> Any:
-        pipe = self._pipe
+    async def _answer(
+        self, job: tuple[str, tuple[Any, ...]] | None, time_limit_s: float, on_progress: Hearer | None = None
+    ) -> Any:
+        pipe, loop = self._pipe, asyncio.get_running_loop()
 
         def exchange() -> Any:
             if job is not None:
                 pipe.send(job)
-            return pipe.recv()
+            while True:
+                kind, content = pipe.recv()
+                if kind != "progress":
+                    return kind, content
+                if on_progress is not None:
+                    loop.call_soon_threadsafe(on_progress, *content)
 
         try:
             async with asyncio.timeout(time_limit_s):
@@ -79,6 +109,8 @@ class Worker:
             raise
         if kind == "refused":
             raise JobRefusedError(content)
+        if kind == "cancelled":
+            raise JobCancelledError(f"{job and job[0]} was cancelled")
         if kind == "failed":
             logger.error("job %s failed:\n%s", job and job[0], content)
             raise JobFailedError("an internal error; the server's log has the details")
@@ -96,12 +128,18 @@ class Worker:
 
 
 class Pool:
-    """A worker for the designs that live changes wait for, and one for simulations, so that neither waits for the other."""
+    """A worker for each kind of work, so that none waits for another.
+
+    Designs that live changes wait for; the analysis that follows each change; simulations; long tasks.
+    """
 
     def __init__(self) -> None:
-        self.design = Worker("vssea design", niceness=0)
-        self.simulation = Worker("vssea simulation", niceness=10)
+        self.design = Worker("vssea design", "plan_run", niceness=0)
+        self.analysis = Worker("vssea analysis", "margins_of", niceness=8)
+        self.simulation = Worker("vssea simulation", "simulate_scenario", niceness=10)
+        self.tasks = Worker("vssea tasks", "simulate_scenario", niceness=15)
 
     async def stop(self) -> None:
-        """End both."""
-        await asyncio.gather(self.design.stop(), self.simulation.stop())
+        """End all of them."""
+        workers = (self.design, self.analysis, self.simulation, self.tasks)
+        await asyncio.gather(*(worker.stop() for worker in workers))

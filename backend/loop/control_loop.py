@@ -4,14 +4,15 @@ import time
 from collections.abc import Iterator
 from multiprocessing.connection import Connection
 
-from backend.loop.engine import Engine
 from backend.loop.messages import (
     Changed,
     Command,
     Done,
+    Followed,
     Install,
     Load,
     Pause,
+    Plan,
     Refused,
     Report,
     Reset,
@@ -26,6 +27,7 @@ from backend.loop.messages import (
 from backend.loop.pacer import Pacer
 from backend.telemetry.ring import EPOCH, EXECUTION_US, LATENESS_US, OVERRUNS, PERIOD_S, RUNS, WRITTEN, RingWriter
 from backend.telemetry.stop_flag import StopFlag
+from vssea_core.simulation.closed_loop import ClosedLoop
 
 SHORTEST_TURN_S = 1e-3
 """A turn lasts at least this long: faster sample times and paces advance several samples a turn."""
@@ -35,12 +37,12 @@ STOP_REASON = "Stopped on request"
 
 
 class ControlLoop:
-    """Owns the engine; everything that can be asked of it comes through the pipe or the stop flag."""
+    """Owns the closed loop; everything that can be asked of it comes through the pipe or the stop flag."""
 
     def __init__(self, ring: RingWriter, flag: StopFlag, pipe: Connection, pacer: Pacer | None = None) -> None:
         self._ring, self._flag, self._pipe = ring, flag, pipe
         self._pacer = pacer or Pacer()
-        self._engine: Engine | None = None
+        self._loop: ClosedLoop | None = None
         self._pace = 1.0
         self.state: State = "starting"
         self.epoch = int(ring.header[RUNS])  # goes on where a process that died left off
@@ -55,8 +57,8 @@ class ControlLoop:
         for number, command in self._commands():
             self._report(self._obey(number, command))
         length = IDLE_TURN_S
-        if self._engine is not None and self.state in TICKING:
-            period = self._engine.period_s / self._pace
+        if self._loop is not None and self.state in TICKING:
+            period = self._loop.period_s / self._pace
             samples = max(1, round(SHORTEST_TURN_S / period))
             self._advance(samples, late_s)
             length = samples * period
@@ -78,28 +80,31 @@ class ControlLoop:
                 self._ring.header[OVERRUNS] += self._pacer.overruns - before
 
     def _advance(self, count: int, late_s: float) -> None:
-        engine = self._engine
-        if engine is None:
+        loop = self._loop
+        if loop is None:
             return
         _, rows = self._ring.room(count)
         started = time.perf_counter_ns()
-        done, fault = engine.advance(rows)
+        done, fault = loop.advance(rows)
         taken_us = (time.perf_counter_ns() - started) * 1e-3
         kept = min(done + 1, len(rows)) if fault else done  # the sample from which it could not go on is worth seeing
         rows[:kept, EPOCH] = self.epoch
-        rows[:kept, PERIOD_S] = engine.period_s
+        rows[:kept, PERIOD_S] = loop.period_s
         rows[:kept, LATENESS_US] = late_s * 1e6
         rows[:kept, EXECUTION_US] = taken_us / len(rows)
         self._ring.header[WRITTEN] += kept
+        for follower in loop.passed:
+            self._report(Followed(follower.index, follower.at_s, loop.tuning_id))
+        loop.passed.clear()
         if fault is not None:
-            self._become("fault", f"Diverged at t = {engine.time_s:.3f} s: {fault}. Change the tuning, then Reset.")
+            self._become("fault", f"Diverged at t = {loop.time_s:.3f} s: {fault}. Change the tuning, then Reset.")
 
     def _stop(self) -> None:
         self._stops_seen = self._flag.count
         if self.state in ("stopped", "fault"):
             return
-        if self._engine is not None:
-            self._engine.enabled = False
+        if self._loop is not None:
+            self._loop.enabled = False
         self._become("stopped", STOP_REASON)
 
     def _commands(self) -> Iterator[tuple[int, Command]]:
@@ -114,27 +119,29 @@ class ControlLoop:
             self._apply(command)
         except ValueError as refusal:
             return Refused(number, str(refusal))
-        return Done(number, self._engine.time_s if self._engine else 0.0)
+        return Done(number, self._loop.time_s if self._loop else 0.0)
 
     def _apply(self, command: Command) -> None:
         if isinstance(command, Load):
-            self._engine = Engine(command.scenario, command.prepared, command.tuning_id)
+            self._loop = ClosedLoop(command.scenario, command.planned, command.tuning_id)
             self._begin_run()
             latched = self.state in ("stopped", "fault")
             self._become("ready" if latched or not command.run else "running", None)
             return
-        engine = self._engine
-        if engine is None:
+        loop = self._loop
+        if loop is None:
             raise ValueError("the session is still starting; try again in a moment")
         match command:
             case Install(tuning, prepared, tuning_id):
-                engine.install(tuning, prepared, tuning_id)
+                loop.install(tuning, prepared, tuning_id)
+            case Plan(followers):
+                loop.plan(followers)
             case SetReference(reference):
-                engine.set_reference(reference)
+                loop.set_reference(reference)
             case SetStiffness(reference):
-                engine.set_stiffness(reference)
+                loop.set_stiffness(reference)
             case SetDisturbances(disturbances):
-                engine.set_disturbances(disturbances)
+                loop.set_disturbances(disturbances)
             case SetPace(factor):
                 self._pace = factor
                 self._pacer.restart()
@@ -145,7 +152,7 @@ class ControlLoop:
             case Resume():
                 self._resume()
             case Reset():
-                self._reset(engine)
+                self._reset(loop)
 
     def _pause(self) -> None:
         if self.state != "running":
@@ -167,8 +174,8 @@ class ControlLoop:
             self._advance(part, 0.0)
             left -= self._ring.written - before
 
-    def _reset(self, engine: Engine) -> None:
-        engine.restart()
+    def _reset(self, loop: ClosedLoop) -> None:
+        loop.restart()
         self._begin_run()
         self._become("ready" if self.state in ("stopped", "fault") else self.state, None)
 
@@ -181,7 +188,7 @@ class ControlLoop:
 
     def _become(self, state: State, reason: str | None) -> None:
         self.state = state
-        self._report(Changed(state, reason, self.epoch, self._engine.time_s if self._engine else 0.0))
+        self._report(Changed(state, reason, self.epoch, self._loop.time_s if self._loop else 0.0))
 
     def _report(self, report: Report) -> None:
         self._reports.append(report)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from vssea_core.control.tuning import Tuning
 from vssea_core.scenario import Scenario
 from vssea_core.signals.documents import Disturbances, Reference, StiffnessReference
+from vssea_core.simulation.plan import Follower, PreparedRun
 
 State = Literal["starting", "ready", "running", "paused", "stopped", "fault"]
 
@@ -18,7 +19,7 @@ class Load:
     """Restart with another scenario, at t = 0; `run` starts it at once."""
 
     scenario: Scenario
-    prepared: NDArray[np.float64]
+    planned: PreparedRun
     tuning_id: int
     run: bool
 
@@ -30,6 +31,13 @@ class Install:
     tuning: Tuning
     prepared: NDArray[np.float64]
     tuning_id: int
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Replace what is left of the scenario's sequence."""
+
+    followers: tuple[Follower, ...]
 
 
 @dataclass(frozen=True)
@@ -82,7 +90,9 @@ class SetPace:
     factor: float
 
 
-Command = Load | Install | SetReference | SetStiffness | SetDisturbances | Pause | Resume | Step | Reset | SetPace
+Command = (
+    Load | Install | Plan | SetReference | SetStiffness | SetDisturbances | Pause | Resume | Step | Reset | SetPace
+)
 
 
 @dataclass(frozen=True)
@@ -116,4 +126,13 @@ class Changed:
     time_s: float
 
 
-Report = Ready | Done | Refused | Changed
+@dataclass(frozen=True)
+class Followed:
+    """A change of the scenario's sequence took effect."""
+
+    index: int
+    time_s: float
+    tuning_id: int
+
+
+Report = Ready | Done | Refused | Changed | Followed

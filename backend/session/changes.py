@@ -5,7 +5,8 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from backend.problem import FieldError, Problem, from_validation, models_of, refused
+from backend.problem import FieldError, Problem, from_validation, refused
+from vssea_core.changes import UnknownPath, set_values
 from vssea_core.scenario import Scenario
 
 CONSEQUENCE = "Nothing was changed."
@@ -25,10 +26,35 @@ def with_changes(scenario: Scenario, part: str, asked: Changes) -> Scenario:
     document = scenario.model_dump(mode="json")
     if asked.replace is not None:
         document[part] = asked.replace
-    # A kind first: it decides which other names there are.
-    for path in sorted(asked.changes, key=lambda path: (path.split(".")[-1] != "kind", path)):
-        _set(document[part], part, path, asked.changes[path])
+    try:
+        set_values(document, Scenario, {f"{part}.{path}": value for path, value in asked.changes.items()})
+    except UnknownPath as unknown:
+        error = FieldError(unknown.path, None, f"unknown name; known here: {', '.join(unknown.known) or 'nothing'}")
+        raise refused(f"{unknown}. {CONSEQUENCE}", error) from unknown
     return validated(document)
+
+
+def begun_with(beginning: Scenario, part: str, asked: Changes) -> Scenario:
+    """Return the scenario of t = 0 with a live change of `part`; what does not fit there any more is left out."""
+    try:
+        return with_changes(beginning, part, asked)
+    except Problem:
+        return beginning
+
+
+def after_change(scenario: Scenario, changed: dict[str, Any]) -> Scenario:
+    """Return the scenario with a change of its own sequence made; such a change was checked when it was written."""
+    document = scenario.model_dump(mode="json")
+    set_values(document, Scenario, changed)
+    return validated(document)
+
+
+def valued(scenario: Scenario, path: str) -> Any:
+    """Return what stands at a dotted path of the scenario, None if nothing does."""
+    here: Any = scenario.model_dump(mode="json")
+    for name in path.split("."):
+        here = here.get(name) if isinstance(here, dict) else None
+    return here
 
 
 def validated(document: dict[str, Any]) -> Scenario:
@@ -49,43 +75,3 @@ def differences(before: Any, after: Any, path: str = "") -> dict[str, tuple[Any,
             found |= differences(before.get(name), after[name], f"{path}.{name}".lstrip("."))
         return found
     return {} if before == after else {path: (before, after)}
-
-
-def _set(target: dict[str, Any], part: str, path: str, value: Any) -> None:
-    here: Any = target
-    *parents, last = path.split(".")
-    for name in parents:
-        if not isinstance(here, dict) or not isinstance(here.get(name), dict):
-            raise _unknown(part, path, here)
-        here = here[name]
-    if not isinstance(here, dict) or last not in here:
-        raise _unknown(part, path, here)
-    if last == "kind" and here["kind"] != value:
-        _change_kind(here, value, ".".join((part, *parents)))
-    else:
-        here[last] = value
-
-
-def _change_kind(here: dict[str, Any], kind: Any, place: str) -> None:
-    """Take another kind at `place`: its own defaults, and what both kinds share."""
-    model = _alternative(kind, place)
-    own = model().model_dump(mode="json") if model else {}
-    kept = {name: value for name, value in here.items() if name in own}
-    here.clear()
-    here.update(own | kept | {"kind": kind})
-
-
-def _alternative(kind: Any, place: str) -> type[BaseModel] | None:
-    """Return the model of `kind` at `place`, such as tuning.observer; a reference and a disturbance both have a sine."""
-    models: list[type[BaseModel]] = [Scenario]
-    for name in place.split("."):
-        fields = [model.model_fields[name] for model in models if name in model.model_fields]
-        models = [model for field in fields for model in models_of(field.annotation)]
-    kinds = {model.model_fields["kind"].default: model for model in models if "kind" in model.model_fields}
-    return kinds.get(kind) if isinstance(kind, str) else None
-
-
-def _unknown(part: str, path: str, here: Any) -> Problem:
-    known = ", ".join(here) if isinstance(here, dict) else "nothing"
-    error = FieldError(f"{part}.{path}", None, f"unknown name; known here: {known}")
-    return refused(f"{part}.{path} is not a field; known here: {known}. {CONSEQUENCE}", error)

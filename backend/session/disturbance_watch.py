@@ -22,7 +22,11 @@ class DisturbanceWatch:
         self._seen = epoch, now
         moments = {
             (time_s, f"{side} disturbance {word}")
-            for side, terms in (("link", disturbances.link), ("motor", disturbances.motor))
+            for side, terms in (
+                ("link", disturbances.link),
+                ("motor", disturbances.motor),
+                ("stiffness motor", disturbances.stiffness_motor),
+            )
             for term in terms
             for time_s, word in ((term.start_s, "on"), (term.end_s, "off"))
             if time_s is not None and before < time_s <= now

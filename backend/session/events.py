@@ -7,7 +7,17 @@ from datetime import UTC, datetime
 from typing import Any, Literal
 
 Kind = Literal[
-    "tuning", "stiffness", "reference", "disturbance", "state", "limit", "fault", "preset", "scenario", "link"
+    "tuning",
+    "stiffness",
+    "reference",
+    "disturbance",
+    "state",
+    "limit",
+    "fault",
+    "preset",
+    "scenario",
+    "sequence",
+    "link",
 ]
 Severity = Literal["info", "warning", "fault"]
 KEPT = 500

@@ -35,6 +35,17 @@ def reference_words(reference: Reference) -> str:
             return f"moving {reference.origin:.2f} to {reference.target:.2f} rad in {reference.duration_s:.2f} s"
         case "step":
             return f"stepping {reference.origin:.2f} to {reference.target:.2f} rad"
+        case "multisine":
+            return f"tracking {len(reference.components)} sines"
+        case "filtered_step":
+            return f"stepping {reference.origin:.2f} to {reference.target:.2f} rad, filtered"
+        case "chirp":
+            sweep = f"{reference.start_frequency_hz:.2f} to {reference.end_frequency_hz:.2f} Hz"
+            return f"sweeping {sweep}, {reference.amplitude:.2f} rad"
+        case "jog":
+            return f"jogging at {reference.velocity:.2f} rad/s"
+        case "recorded":
+            return f"following {len(reference.times_s)} recorded samples"
 
 
 def change_words(scenario: Scenario, path: str, before: Any, after: Any) -> str:

@@ -14,13 +14,14 @@ from backend.loop import messages
 from backend.presets.store import PresetStore
 from backend.problem import Problem, from_validation, refused
 from backend.session.arguments import Loading, Named, Nothing, Pace, Samples
-from backend.session.changes import Changes, differences, with_changes
+from backend.session.changes import Changes, after_change, begun_with, differences, valued, with_changes
 from backend.session.control_link import ControlLink
 from backend.session.disturbance_watch import DisturbanceWatch
 from backend.session.events import Event, EventLog, Kind, Severity
 from backend.session.fault_snapshot import save_fault_snapshot
 from backend.session.health import Health
 from backend.session.limit_watch import LimitWatch
+from backend.session.live_margins import LiveMargins
 from backend.session.notes import ChangeNotes, Note
 from backend.session.preset_commands import PresetCommands
 from backend.session.sentences import change_words
@@ -48,6 +49,7 @@ class Session:
     def __init__(self, settings: Settings, pool: Pool, store: PresetStore) -> None:
         self._settings, self._pool, self._store = settings, pool, store
         self.scenario: Scenario = SCENARIOS[settings.scenario]
+        self._beginning = self.scenario  # as it stands at t = 0, before the sequence changes it
         self.preset: str | None = None
         self.status = Status()
         self._segment, self._flag = Ring(), StopFlag()
@@ -60,6 +62,7 @@ class Session:
         self.log = EventLog(self._tell_event)
         self._notes = ChangeNotes(self._tell_change)
         self._link = ControlLink(self._on_report, self._on_lost)
+        self.margins = LiveMargins(pool.analysis, self.tell)
         self._turn = asyncio.Lock()
         self._tasks: set[asyncio.Task[None]] = set()
         self._save_timer: asyncio.TimerHandle | None = None
@@ -93,10 +96,11 @@ class Session:
         """Save the last tuning and end the control process."""
         for task in self._tasks:
             task.cancel()
+        await self.margins.stop()
         await asyncio.gather(*self._tasks, return_exceptions=True)
         if self._save_timer is not None:
             self._save_timer.cancel()
-            await asyncio.to_thread(self._store.save_last, self.scenario, self.preset)
+            await asyncio.to_thread(self._store.save_last, self._beginning, self.preset)
         await self._link.stop()
         self.ring.close()
         self._flag.close()
@@ -125,7 +129,7 @@ class Session:
 
     async def _warm_workers(self) -> None:
         """Start the workers beside the control process; a worker that fails to start is tried again when it is needed."""
-        for worker in (self._pool.design, self._pool.simulation):
+        for worker in (self._pool.design, self._pool.analysis, self._pool.simulation):
             try:
                 await worker.start()
             except JobFailedError as failure:
@@ -168,9 +172,11 @@ class Session:
         if self.preset is not None:
             saved = self._store.known(self.preset)
             preset = saved and saved.document()
+        differs = self._beginning != self.scenario
+        beginning = self._beginning.model_dump(mode="json") if differs else None
         return {
-            "type": "document", "scenario": self.scenario.model_dump(mode="json"), "preset": preset,
-            "tuning_id": self.status.tuning_id, "by": by,
+            "type": "document", "scenario": self.scenario.model_dump(mode="json"), "beginning": beginning,
+            "preset": preset, "tuning_id": self.status.tuning_id, "by": by,
         }  # fmt: skip
 
     def tell(self, message: Message) -> None:
@@ -195,6 +201,8 @@ class Session:
     # ---- reports of the control process
 
     def _on_report(self, report: messages.Report) -> None:
+        if isinstance(report, messages.Followed):
+            self._follow(report)
         if not isinstance(report, messages.Changed):
             return
         self.status.take(report)
@@ -262,7 +270,7 @@ class Session:
         """Command another stiffness; refused if the tuning would be unstable there."""
 
         async def command(new: Scenario) -> messages.Done:
-            await self._prepared(new)
+            await self._planned(new)
             return await self._link.command(messages.SetStiffness(new.stiffness_reference))
 
         return await self._change("stiffness_reference", asked, by, command)
@@ -283,6 +291,8 @@ class Session:
             if found:
                 done = await apply(new)
                 self.scenario = new
+                self.margins.ask(new, self.status.tuning_id)
+                await self._keep_sequence(part, asked)
                 self._notes.add(part, by, found, self.status.epoch, done.time_s)
                 self.tell(self.document(by))
                 self.save_soon()
@@ -292,14 +302,32 @@ class Session:
             }
 
     async def _install(self, new: Scenario) -> messages.Done:
-        prepared = await self._prepared(new)
-        done = await self._link.command(messages.Install(new.tuning, prepared, self.status.tuning_id + 1))
+        planned = await self._planned(new)
+        done = await self._link.command(messages.Install(new.tuning, planned.prepared, self.status.tuning_id + 1))
         self.status.tuning_id += 1
         return done
 
-    async def _prepared(self, scenario: Scenario) -> Any:
+    async def _keep_sequence(self, part: str, asked: Changes) -> None:
+        """Let a live change hold beyond a reset, and let what is left of the sequence start from it."""
+        self._beginning = self.scenario if not self.scenario.sequence else begun_with(self._beginning, part, asked)
+        if self.scenario.sequence:
+            planned = await self._planned(self.scenario)
+            await self._link.command(messages.Plan(planned.followers))
+
+    def _follow(self, report: messages.Followed) -> None:
+        """Take over a change that the sequence made."""
+        changed = dict(self.scenario.sequence[report.index].changes)
+        before = self.scenario
+        self.scenario = after_change(before, changed)
+        self.status.tuning_id = report.tuning_id
+        self.margins.ask(self.scenario, report.tuning_id)
+        words = [change_words(self.scenario, path, valued(before, path), value) for path, value in changed.items()]
+        self.log.add("sequence", ", ".join(words), "sequence", self.status.epoch, report.time_s)
+        self.tell(self.document("sequence"))
+
+    async def _planned(self, scenario: Scenario) -> Any:
         try:
-            return await self._pool.design.run("prepare_tuning", scenario)
+            return await self._pool.design.run("plan_run", scenario)
         except JobRefusedError as refusal:
             sentence = str(refusal)
             raise refused(f"{sentence[:1].upper()}{sentence[1:]}. The old tuning keeps running.") from refusal
@@ -322,11 +350,12 @@ class Session:
         return {"tuning_id": self.status.tuning_id}
 
     async def _load(self, scenario: Scenario) -> None:
-        prepared = await self._prepared(scenario)
+        planned = await self._planned(scenario)
         run = self.status.state in ("starting", "running")
-        await self._link.command(messages.Load(scenario, prepared, self.status.tuning_id + 1, run))
+        await self._link.command(messages.Load(scenario, planned, self.status.tuning_id + 1, run))
         self.status.tuning_id += 1
-        self.scenario = scenario
+        self.scenario = self._beginning = scenario
+        self.margins.ask(scenario, self.status.tuning_id)
         self.tell(self.document())
 
     async def pause(self, _: Nothing, by: str) -> Message:
@@ -349,7 +378,9 @@ class Session:
         async with self._turn:
             if self._link.ended:
                 await self._link.start(self.ring_name, self._flag.name, self.status.epoch)
-                await self._load(self.scenario)
+                await self._load(self._beginning)
+            elif self.scenario.sequence:
+                await self._load(self._beginning)  # what the sequence changed goes back to what it was
             else:
                 await self._link.command(messages.Reset())
         self.status.stopped_by = None
@@ -372,4 +403,4 @@ class Session:
 
     async def _save(self) -> None:
         self._save_timer = None
-        await asyncio.to_thread(self._store.save_last, self.scenario, self.preset)
+        await asyncio.to_thread(self._store.save_last, self._beginning, self.preset)

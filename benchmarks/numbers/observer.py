@@ -5,9 +5,10 @@ import numpy as np
 from benchmarks.numbers.setting import run_with
 from benchmarks.numbers.table import PRODUCT, Line, mrad, rms, settled
 from tests.core.experiment import Experiment
-from vssea_core.control.law import Law
-from vssea_core.control.observer import Channel, ObserverGains
+from vssea_core.control.law import GAINS
+from vssea_core.control.observer import Channel
 from vssea_core.control.observer_design import velocity_exact, velocity_first_order_hold
+from vssea_core.control.packing import OBSERVER, ROWS_AT
 from vssea_core.control.prepared import prepare
 from vssea_core.control.tuning import Tuning, VelocityObserver
 from vssea_core.scenario import Scenario
@@ -43,7 +44,7 @@ def with_gains(tuning: Tuning, parts: list[np.ndarray]) -> np.ndarray:
     prepared = prepare(tuning, T)
     numbers = np.concatenate([part.ravel() for part in parts])
     for channel in (0, 1):
-        start = len(Law._fields) + channel * len(ObserverGains._fields)
+        start = ROWS_AT + GAINS + channel * OBSERVER
         prepared[start : start + len(numbers)] = numbers
     return prepared
 

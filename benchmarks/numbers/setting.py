@@ -43,7 +43,7 @@ def run_with(scenario: Scenario, prepared: np.ndarray) -> Trajectory:
     slew = slew_row(scenario.stiffness_reference, scenario.tuning, scenario.actuator.stiffness, period)
     done, _ = run(
         inputs.rig, prepared, prepared, reference_row(scenario.reference), slew, inputs.link_terms,
-        inputs.motor_terms, True, 1.0, equilibrium_state(scenario), 0, count, rows,
+        inputs.motor_terms, inputs.stiffness_terms, True, 1.0, equilibrium_state(scenario), 0, count, rows,
     )  # fmt: skip
     return Trajectory(rows[:done], period)
 

@@ -13,6 +13,16 @@ export function element(tag, attributes = {}, ...children) {
   return made;
 }
 
+/** Give an element these children in this order, without moving those that it has: what has focus keeps it. */
+export function arrange(parent, children) {
+  for (const child of [...parent.children]) if (!children.includes(child)) child.remove();
+  let next = parent.firstElementChild;
+  for (const child of children) {
+    if (child === next) next = next.nextElementSibling;
+    else parent.insertBefore(child, next);
+  }
+}
+
 /** Set an element's text only when it differs: no needless layout, no repeated announcement. */
 export function setText(target, text) {
   if (target.textContent !== text) target.textContent = text;

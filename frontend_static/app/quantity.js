@@ -30,6 +30,11 @@ export function inputText(value) {
   return size >= 1e6 || (size > 0 && size < 1e-4) ? exponential(value, 6) : String(Number(value.toPrecision(7)));
 }
 
+/** @returns {string} a value in a sentence: at most three significant digits, no needless zeros */
+export function briefly(value) {
+  return typeof value === "number" ? inputText(Number(value.toPrecision(3))).replace("-", MINUS) : "–";
+}
+
 /** @returns {number} what was typed, NaN if it is not a number; a decimal comma and a true minus are understood */
 export function readNumber(text) {
   const plain = text

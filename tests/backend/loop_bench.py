@@ -15,6 +15,7 @@ from vssea_core.channels import INDEX
 from vssea_core.control.prepared import prepare
 from vssea_core.control.tuning import Tuning
 from vssea_core.scenario import Scenario
+from vssea_core.simulation.run import prepare_scenario
 
 
 class Pipe:
@@ -68,7 +69,7 @@ class Bench:
         return answer
 
     def load(self, scenario: Scenario, run: bool = True) -> messages.Done | messages.Refused:
-        return self.ask(messages.Load(scenario, prepared(scenario, scenario.tuning), 1, run))
+        return self.ask(messages.Load(scenario, prepare_scenario(scenario), 1, run))
 
     def turns(self, count: int) -> float:
         return sum(self.loop.turn() for _ in range(count))

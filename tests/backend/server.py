@@ -15,6 +15,8 @@ import httpx
 START_LIMIT_S = 120.0  # the kernels may have to be compiled first
 END_LIMIT_S = 20.0
 LOOK_AGAIN_S = 0.02
+WORKERS = {8: "analysis", 10: "simulation", 15: "tasks"}
+"""Workers by their niceness (backend.compute.pool)."""
 Found = TypeVar("Found")
 
 
@@ -103,6 +105,6 @@ def _role(pid: int) -> str | None:
         return None
     if "python" not in mapped or nice == 5:
         return None
-    if nice == 10:
-        return "simulation"
+    if nice in WORKERS:
+        return WORKERS[nice]
     return "control" if "/dev/shm/" in mapped else "design"

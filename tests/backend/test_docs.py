@@ -1,5 +1,6 @@
 """What the documents list is what the code has: settings, commands, routes, messages, channels and limits."""
 
+import importlib
 import json
 import re
 from pathlib import Path
@@ -11,6 +12,9 @@ from typer.testing import CliRunner
 from backend.cli import app
 from backend.settings import Settings
 from vssea_core.channels import CHANNELS, LIMITS
+from vssea_core.export.bundle import all_files
+from vssea_core.export.ticks import INPUT_UNITS, OUTPUT_UNITS
+from vssea_core.scenarios import NOMINAL
 
 DOCS = Path(__file__).parents[2] / "docs"
 PROTOCOL = (DOCS / "protocol.md").read_text("utf-8")
@@ -83,3 +87,32 @@ def test_every_channel_and_limit_is_listed_in_order() -> None:
     assert [[cell.strip("`") for cell in row] for row in limits] == [
         [str(limit.bit), limit.name, limit.sentence] for limit in LIMITS
     ]
+
+
+def test_every_function_and_test_that_the_theory_names_exists() -> None:
+    text = (DOCS / "theory.md").read_text("utf-8")
+    named = {name for name in quoted(text) if name.startswith("vssea_core.")}
+    assert len(named) > 40
+    for name in named:
+        module, _, function = name.rpartition(".")
+        assert callable(getattr(importlib.import_module(module), function, None)), name
+    tests = {name for name in quoted(text) if name.startswith("tests/")}
+    assert len(tests) > 12
+    for place in tests:
+        file, _, function = place.partition("::")
+        source = (DOCS.parent / file).read_text("utf-8")
+        assert f"def {function}(" in source or not function, place
+
+
+def test_every_input_and_output_of_the_exported_controller_is_listed_in_order() -> None:
+    text = (DOCS / "export.md").read_text("utf-8")
+    for heading, units in (("### Inputs", INPUT_UNITS), ("### Outputs", OUTPUT_UNITS)):
+        rows = {row[0].strip("`"): row[1] for row in table(text, heading)}
+        assert list(rows.items()) == list(units.items())
+
+
+def test_every_file_of_an_export_is_listed() -> None:
+    listed = [name for row in table((DOCS / "export.md").read_text("utf-8"), "# The tuned") for name in quoted(row[0])]
+    assert {name.removeprefix("vssea_controller") for name in all_files(NOMINAL)} == {
+        name.removeprefix("vssea_controller") for name in listed
+    }

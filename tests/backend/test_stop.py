@@ -62,7 +62,7 @@ def test_nothing_but_a_reset_leaves_the_latch(bench: Bench, latched: str) -> Non
         bench.flag.raise_()
         bench.turns(1)
     else:
-        bench.loop._engine._state[0] = 2000.0  # type: ignore[union-attr]  # no input gets there on purpose
+        bench.loop._loop._state[0] = 2000.0  # type: ignore[union-attr]  # no input gets there on purpose
         bench.turns(1)
     assert bench.loop.state == latched
     for command in (messages.Pause(), messages.Resume(), messages.Step(5)):

@@ -78,8 +78,8 @@ def open_page(browser: Browser) -> Iterator[OpenPage]:
 def wait_for_samples(page: Page) -> None:
     """Wait until telemetry arrives and time goes on."""
     wait_until(page, "() => window.vssea !== undefined && window.vssea.store.length > 0")
-    seen = page.evaluate("window.vssea.latest('time')")
-    wait_until(page, "seen => window.vssea.latest('time') > seen", seen)
+    seen = page.evaluate("[window.vssea.store.epoch, window.vssea.latest('time')]")  # perhaps the end of the run before
+    wait_until(page, "([epoch, t]) => window.vssea.store.epoch !== epoch || window.vssea.latest('time') > t", seen)
 
 
 @pytest.fixture

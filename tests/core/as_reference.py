@@ -1,11 +1,12 @@
 """A scenario in the terms of the independent reference, so that both run the same experiment."""
 
+from collections.abc import Sequence
 from math import inf, pi
 
 from tests.reference import parameters as reference
 from vssea_core.control.tuning import PositionObserver, SlidingMode, Tuning
 from vssea_core.scenario import Scenario
-from vssea_core.signals.documents import ConstantDisturbance, Disturbance, MoveReference, SineReference
+from vssea_core.signals.documents import LinkDisturbance, MoveReference, SineReference, StepReference
 from vssea_core.simulation.state import equilibrium_state
 
 
@@ -26,8 +27,9 @@ def reference_config(scenario: Scenario, **changes: object) -> reference.Config:
         "controller": reference_controller(scenario.tuning),
         "reference": _reference(scenario),
         "stiffness": _stiffness(scenario),
-        "link_disturbance": tuple(_term(term) for term in scenario.disturbances.link),
-        "motor_disturbance": tuple(_term(term) for term in scenario.disturbances.motor),
+        "link_disturbance": _terms(scenario.disturbances.link),
+        "motor_disturbance": _terms(scenario.disturbances.motor),
+        "stiffness_disturbance": _terms(scenario.disturbances.stiffness_motor),
         "sample_time_s": scenario.timing.sample_time_s,
         "duration_s": scenario.duration_s,
         "delay_samples": scenario.timing.compute_delay_samples,
@@ -109,6 +111,8 @@ def _reference(scenario: Scenario) -> reference.Reference:
         return reference.Reference(
             "sine", wanted.amplitude, wanted.frequency_hz, offset=wanted.offset, fade_s=wanted.fade_in_s
         )
+    if not isinstance(wanted, MoveReference | StepReference):
+        raise ValueError(f"the reference knows sines, moves and steps only, not a {wanted.kind}")
     if wanted.repeat:
         raise ValueError("the reference knows single moves and steps only; expected repeat=False")
     times = {"start_s": wanted.start_s}
@@ -126,8 +130,18 @@ def _stiffness(scenario: Scenario) -> reference.StiffnessReference:
     )
 
 
-def _term(term: Disturbance) -> reference.Term:
-    end = inf if term.end_s is None else term.end_s
-    if isinstance(term, ConstantDisturbance):
-        return reference.Term(term.torque, start_s=term.start_s, end_s=end)
-    return reference.Term(term.amplitude, term.frequency_hz, term.phase, term.start_s, end, "sine")
+def _terms(terms: Sequence[LinkDisturbance]) -> tuple[reference.Term, ...]:
+    found = []
+    for term in terms:
+        span = term.start_s, inf if term.end_s is None else term.end_s
+        match term.kind:
+            case "constant":
+                found.append(reference.Term(term.torque, start_s=span[0], end_s=span[1]))
+            case "sine":
+                found.append(reference.Term(term.amplitude, term.frequency_hz, term.phase, *span, "sine"))
+            case "multisine":
+                parts = term.components
+                found.extend(reference.Term(p.amplitude, p.frequency_hz, p.phase, *span, "sine") for p in parts)
+            case _:
+                raise ValueError(f"the reference knows constants and sines only, not a {term.kind}")
+    return tuple(found)

@@ -43,7 +43,7 @@ class Experiment:
         rows = np.empty((count, len(CHANNELS)))
         scenario, inputs = self.scenario, self.inputs
         slew = slew_row(scenario.stiffness_reference, scenario.tuning, scenario.actuator.stiffness, self.period)
-        terms = inputs.link_terms, inputs.motor_terms
+        terms = inputs.link_terms, inputs.motor_terms, inputs.stiffness_terms
         _, end = run(
             self.rig, before, self.tuning, self.reference, slew, *terms, True, 1.0, self.state, self.sample, count, rows
         )

@@ -11,14 +11,27 @@ from vssea_core.control.tuning import PositionObserver, SlidingMode, StateFeedba
 from vssea_core.scenario import Initial, Scenario
 from vssea_core.scenarios import NOMINAL
 from vssea_core.signals.documents import (
+    ChirpDisturbance,
+    ChirpReference,
     ConstantDisturbance,
     ConstantStiffness,
+    ContactDisturbance,
     Disturbances,
+    FilteredStepReference,
+    JogReference,
     MoveReference,
     MoveStiffness,
+    MultisineDisturbance,
+    MultisineReference,
+    NoiseDisturbance,
+    PendulumDisturbance,
+    PositionComponent,
+    PulseDisturbance,
+    RecordedReference,
     SineDisturbance,
     SineReference,
     StepReference,
+    TorqueComponent,
 )
 from vssea_core.simulation.metrics import metrics
 from vssea_core.simulation.run import simulate
@@ -32,6 +45,7 @@ actuators = st.builds(
         EquilibriumMotor,
         coulomb_friction=st.floats(0.0, 9.0),
         torque_lag_s=st.sampled_from([0.0, 1e-5, 1.6e-4, 5e-4, 5e-3]),
+        torque_delay_s=st.sampled_from([0.0, 0.0, 1e-4, 5e-4, 2.2e-3]),
     ),
     stiffness=st.builds(StiffnessMechanism, back_torque=st.sampled_from(["energy", "paper"])),
 )
@@ -51,20 +65,42 @@ tunings = st.builds(
         ),
     ),
 )
-loads = st.lists(
-    st.one_of(
-        st.builds(ConstantDisturbance, torque=st.floats(-10.0, 10.0), start_s=st.floats(0.01, 0.3)),
-        st.builds(
-            SineDisturbance, amplitude=st.floats(0.0, 20.0), frequency_hz=st.floats(0.0, 200.0), phase=st.just(0.0)
-        ),
+anywhere = [
+    st.builds(ConstantDisturbance, torque=st.floats(-10.0, 10.0), start_s=st.floats(0.01, 0.3)),
+    st.builds(SineDisturbance, amplitude=st.floats(0.0, 20.0), frequency_hz=st.floats(0.0, 200.0), phase=st.just(0.0)),
+    st.builds(
+        MultisineDisturbance,
+        components=st.lists(st.builds(TorqueComponent, frequency_hz=st.floats(0.0, 200.0)), max_size=8).map(tuple),
     ),
-    max_size=3,
-).map(tuple)
+    st.builds(ChirpDisturbance, end_frequency_hz=st.floats(0.01, 200.0), duration_s=st.floats(0.1, 2.0)),
+    st.builds(NoiseDisturbance, rms=st.floats(0.0, 0.3), bandwidth_hz=st.floats(0.01, 100.0)),
+    st.builds(PulseDisturbance, torque=st.floats(-10.0, 10.0), width_s=st.floats(0.005, 0.09), period_s=st.floats(0.1, 0.4),
+              start_s=st.floats(0.01, 0.3)),
+]  # fmt: skip
+met = [
+    st.builds(PendulumDisturbance, mass=st.floats(0.0, 0.5), length=st.floats(0.0, 0.5)),
+    st.builds(
+        ContactDisturbance, position=st.floats(1.0, 1.5), stiffness=st.floats(0.0, 1e5), damping=st.floats(0.0, 100.0)
+    ),
+    st.builds(
+        ContactDisturbance, position=angles, side=st.sampled_from(["above", "below"]), start_s=st.floats(0.01, 0.3)
+    ),
+]
+loads = st.lists(st.one_of(anywhere), max_size=3).map(tuple)
+link_loads = st.lists(st.one_of(anywhere + met), max_size=3).map(tuple)
+late_loads = st.lists(
+    st.builds(ConstantDisturbance, torque=st.floats(-1.0, 1.0), start_s=st.floats(0.01, 0.3)), max_size=2
+)
 scenarios = st.builds(
     Scenario,
     actuator=actuators,
     sensors=st.builds(
-        Sensors, link_bits=st.integers(0, 20), motor_counts=st.sampled_from([0, 1, 16384]), velocities=st.booleans()
+        Sensors,
+        link_bits=st.integers(0, 20),
+        motor_counts=st.sampled_from([0, 1, 16384]),
+        velocities=st.booleans(),
+        link_noise=st.sampled_from([0.0, 0.0, 1e-4]),
+        velocity_noise=st.sampled_from([0.0, 0.0, 0.1]),
     ),
     timing=st.builds(
         Timing, sample_time_s=st.sampled_from([1e-4, 3.3e-4, 1e-3, 5e-3]), compute_delay_samples=st.sampled_from([0, 1])
@@ -74,12 +110,21 @@ scenarios = st.builds(
         st.builds(SineReference, amplitude=angles.map(abs), frequency_hz=st.floats(0.0, 50.0)),
         st.builds(MoveReference, target=angles, duration_s=st.floats(0.02, 1.0), start_s=st.floats(0.0, 0.2)),
         st.builds(StepReference, target=angles, start_s=st.floats(0.0, 0.2)),
+        st.builds(
+            MultisineReference,
+            components=st.lists(st.builds(PositionComponent, frequency_hz=st.floats(0.0, 50.0)), max_size=8).map(tuple),
+        ),
+        st.builds(FilteredStepReference, target=angles, bandwidth=st.floats(1.0, 200.0), dwell_s=st.floats(1.0, 2.0)),
+        st.builds(ChirpReference, amplitude=angles.map(abs), end_frequency_hz=st.floats(0.01, 50.0)),
+        st.builds(JogReference, velocity=st.floats(-20.0, 20.0), distance=st.one_of(st.none(), st.floats(0.01, 10.0))),
+        st.builds(RecordedReference, positions=st.tuples(angles, angles, angles, angles)),
     ),
     stiffness_reference=st.one_of(
         st.builds(ConstantStiffness, stiffness=stiffnesses),
         st.builds(MoveStiffness, stiffness=stiffnesses, target=stiffnesses, start_s=st.floats(0.0, 0.2)),
     ),
-    disturbances=st.builds(Disturbances, link=loads, motor=loads),
+    disturbances=st.builds(Disturbances, link=link_loads, motor=loads, stiffness_motor=late_loads.map(tuple)),
+    seed=st.integers(0, 2**31 - 1),
     initial=st.builds(Initial, link_position=angles),
     duration_s=st.floats(0.001, 0.5),
 )

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from vssea_core.actuator import drive
 from vssea_core.actuator.dynamics import PlantState
 from vssea_core.actuator.parameters import Actuator, EquilibriumMotor, Sensors, StiffnessMechanism
-from vssea_core.actuator.sensors import encoders, measure, quantised
+from vssea_core.actuator.sensors import Noise, encoders, measure, quantised
 from vssea_core.channels import LIMITS
 from vssea_core.scenario import Scenario
 from vssea_core.scenarios import NOMINAL, REALISTIC
@@ -146,7 +146,14 @@ def test_an_encoder_is_within_half_a_count_and_on_a_whole_one(angle: float, reso
 
 def test_an_ideal_encoder_reads_the_angle_itself() -> None:
     state = PlantState(0.123456789, 1.0, -0.3, 2.0, 53.7, 3.0, 0.0)
-    assert tuple(measure(encoders(Sensors(), EquilibriumMotor()), state)) == (0.123456789, -0.3, 53.7, 1.0, 2.0, 3.0)
+    assert tuple(measure(encoders(Sensors(), EquilibriumMotor()), Noise(), state, 7)) == (
+        0.123456789,
+        -0.3,
+        53.7,
+        1.0,
+        2.0,
+        3.0,
+    )
 
 
 def test_the_motors_encoder_sits_before_the_gear() -> None:

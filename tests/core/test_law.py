@@ -10,15 +10,16 @@ from tests.reference import parameters as reference
 from tests.reference.plant import advance, derivative
 from vssea_core.actuator.parameters import EquilibriumMotor
 from vssea_core.control.design import state_feedback_gains, surface_gains
-from vssea_core.control.law import SLIDING_MODE, Law, StiffnessTarget, Target, Terms, act, switched
+from vssea_core.control.law import LAYER, SGN, SLIDING_MODE, Law, StiffnessTarget, Target, Terms, act, switched
 from vssea_core.control.observer import Channel, Memory, Spring
+from vssea_core.control.packing import law_of
 from vssea_core.control.prepared import prepare
 from vssea_core.control.tuning import SlidingMode, StateFeedback, Tuning
 from vssea_core.scenarios import NOMINAL
 from vssea_core.signals.documents import StepReference
 from vssea_core.simulation.run import simulate
 
-LAW = Law(*prepare(Tuning(), 1e-3)[: len(Law._fields)])
+LAW = law_of(prepare(Tuning(), 1e-3))
 PLANT = reference.Plant()
 angles, rates = st.floats(-0.4, 0.4), st.floats(-2.0, 2.0)
 decades = pytest.mark.parametrize("pole", [0.5, 8.0, 20.0, 500.0])
@@ -31,6 +32,7 @@ def terms_at(law: Law, x: np.ndarray, link: np.ndarray, motor: float, r: Target,
         Channel(x[2], x[3], motor, 0.0, 0.0, x[2]),
         Channel(x[4], x[5], 0.0, 0.0, 0.0, x[4]),
         Spring(0.0, 0.0, 1.0),
+        0.0,
     )
     return Terms(*act(law, memory, r, StiffnessTarget(x[4], x[5], ms_acceleration)))
 
@@ -92,9 +94,9 @@ def test_surface_gains_are_the_polynomial_of_the_sliding_poles(pole: float) -> N
 @given(sigma=st.floats(-1e6, 1e6), width=st.floats(1e-3, 1e6))
 @settings(deadline=None, max_examples=50)
 def test_the_switch_saturates_over_its_layer_and_is_odd(sigma: float, width: float) -> None:
-    assert switched(sigma, width) == pytest.approx(np.clip(sigma / width, -1.0, 1.0), abs=1e-15)
-    assert switched(sigma, 0.0) == np.sign(sigma)
-    assert switched(-sigma, width) == -switched(sigma, width)
+    assert switched(LAYER, sigma, width) == pytest.approx(np.clip(sigma / width, -1.0, 1.0), abs=1e-15)
+    assert switched(SGN, sigma, width) == np.sign(sigma)
+    assert switched(LAYER, -sigma, width) == -switched(LAYER, sigma, width)
 
 
 @given(
@@ -108,7 +110,7 @@ def test_inside_its_layer_the_sliding_law_is_state_feedback(
     """With l = rho/phi: K = [l s1, s1 + l s2, s2 + l s3, s3 + l]."""
     s1, s2, s3 = surface_gains(pole)
     sliding = LAW._replace(
-        controller=SLIDING_MODE, s1=s1, s2=s2, s3=s3, layer_width=width, switching_gain=slope * width
+        controller=SLIDING_MODE, switch=LAYER, s1=s1, s2=s2, s3=s3, layer_width=width, switching_gain=slope * width
     )
     k1, k2, k3, k4 = slope * s1, s1 + slope * s2, s2 + slope * s3, s3 + slope
     linear = LAW._replace(k1=k1, k2=k2, k3=k3, k4=k4, s1=s1, s2=s2, s3=s3)
@@ -125,8 +127,8 @@ def test_inside_its_layer_the_sliding_law_is_state_feedback(
 
 def test_the_prepared_numbers_of_a_tuning_are_its_gains_and_its_model() -> None:
     tuning = Tuning(controller=SlidingMode(surface_pole=11.0, switching_gain=7e3, switch="sgn"))
-    made = Law(*prepare(tuning, 1e-3)[: len(Law._fields)])
-    assert (made.controller, made.switching_gain, made.layer_width) == (SLIDING_MODE, 7e3, 0.0)
+    made = law_of(prepare(tuning, 1e-3))
+    assert (made.controller, made.switching_gain, made.switch) == (SLIDING_MODE, 7e3, SGN)
     assert np.allclose([made.s1, made.s2, made.s3], surface_gains(11.0))
     assert (made.link_inertia, made.motor_damping) == (tuning.model.link_inertia, tuning.model.motor_damping)
 

@@ -7,7 +7,19 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from vssea_core.signals.documents import MoveReference, Reference, SineReference, StepReference
+from vssea_core.signals.documents import (
+    ChirpReference,
+    FilteredStepReference,
+    JogReference,
+    MoveReference,
+    MultisineReference,
+    PositionComponent,
+    RecordedReference,
+    Reference,
+    SineReference,
+    StepReference,
+)
+from vssea_core.signals.recorded import spline_pieces
 from vssea_core.signals.references import (
     REFERENCE_SIZE,
     TRANSITION_RATE,
@@ -24,6 +36,28 @@ SMOOTH: dict[str, Reference] = {
     "sine without fade-in": SineReference(amplitude=0.5, frequency_hz=0.7, fade_in_s=0.0),
     "single move": MoveReference(origin=-0.3, target=0.6, duration_s=0.8, repeat=False, start_s=0.2),
     "to and fro": MoveReference(origin=0.1, target=0.5, duration_s=0.6, dwell_s=0.3, start_s=0.1),
+    "multisine": MultisineReference(
+        components=(
+            PositionComponent(amplitude=0.3, frequency_hz=0.3, phase=1.0),
+            PositionComponent(amplitude=0.1, frequency_hz=1.1),
+        ),
+        offset=0.1,
+        fade_in_s=0.9,
+    ),
+    "filtered step": FilteredStepReference(origin=-0.1, target=0.3, bandwidth=12.0, repeat=False, start_s=0.2),
+    "filtered square": FilteredStepReference(target=0.4, bandwidth=8.0, dwell_s=0.35, start_s=0.1),
+    "linear chirp": ChirpReference(
+        amplitude=0.2, start_frequency_hz=0.2, end_frequency_hz=1.5, duration_s=2.5, sweep="linear", offset=0.1
+    ),
+    "logarithmic chirp": ChirpReference(amplitude=0.2, start_frequency_hz=0.3, end_frequency_hz=1.2, duration_s=2.0),
+    "falling chirp that stops": ChirpReference(
+        amplitude=0.2, start_frequency_hz=1.5, end_frequency_hz=0.2, duration_s=2.0, after="stop", fade_in_s=0.8
+    ),
+    "jog": JogReference(velocity=-0.4, acceleration=2.0, jerk=30.0, snap=500.0, origin=0.2),
+    "jog that stops": JogReference(velocity=0.5, acceleration=2.0, jerk=30.0, snap=500.0, distance=0.6),
+    "recorded": RecordedReference(
+        times_s=(0.2, 0.6, 1.1, 1.3, 1.8, 2.2, 2.5), positions=(0.1, 0.15, 0.3, 0.35, 0.3, 0.1, 0.1)
+    ),
 }
 smooth = pytest.mark.parametrize("reference", SMOOTH.values(), ids=SMOOTH)
 SCALE = np.array([1.0, 5.0, 50.0, 500.0, 5000.0])  # of the derivatives of these references
@@ -41,10 +75,21 @@ def slopes(values: Callable[[float], np.ndarray], time: float, h: float = 1e-3) 
 
 def joins(reference: Reference) -> np.ndarray:
     """Times at which the fifth derivative jumps, so that differences across them are coarse."""
-    if isinstance(reference, SineReference):
-        return np.array([0.0, reference.fade_in_s])
-    starts = reference.start_s + np.arange(8.0) * (reference.duration_s + reference.dwell_s)
-    return np.concatenate([starts, starts + reference.duration_s])
+    match reference.kind:
+        case "sine" | "multisine":
+            return np.array([0.0, reference.fade_in_s])
+        case "chirp":
+            ends = np.array([0.9 * reference.duration_s, reference.duration_s])
+            return np.concatenate([[0.0, reference.fade_in_s], ends, [reference.duration_s - reference.fade_in_s]])
+        case "move":
+            starts = reference.start_s + np.arange(8.0) * (reference.duration_s + reference.dwell_s)
+            return np.concatenate([starts, starts + reference.duration_s])
+        case "jog":
+            row = reference_row(reference)
+            return np.array([0.0, row[4], row[5], row[5] + row[6]])
+        case "recorded":
+            return spline_pieces(np.array(reference.times_s), np.array(reference.positions))[0]
+    return reference.start_s + np.arange(20.0) * reference.dwell_s
 
 
 @smooth
@@ -84,7 +129,7 @@ def test_a_step_jumps_at_its_tick_and_has_no_derivatives() -> None:
 def test_times_of_a_reference_count_from_when_it_is_set() -> None:
     for reference in SMOOTH.values():
         now, later = reference_row(reference), reference_row(reference, set_at_s=7.0)
-        assert len(now) == REFERENCE_SIZE
+        assert len(now) == len(later) >= REFERENCE_SIZE
         assert np.allclose(at(now, 1.3), at(later, 8.3), rtol=1e-9, atol=1e-9)
 
 

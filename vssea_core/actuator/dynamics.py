@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 from vssea_core.actuator.spring import leaf
 from vssea_core.actuator.stages import shifted_1, shifted_2, shifted_3, shifted_4, shifted_5
-from vssea_core.compiled import inlined
-from vssea_core.signals.disturbances import INSTANTS, loads_of_step
+from vssea_core.actuator.surroundings import met_load
+from vssea_core.compiled import entry, inlined
+from vssea_core.signals.disturbances import C2, C3, C4, C5, loads_of_step
 
 
 class Plant(NamedTuple):
@@ -46,6 +47,7 @@ class PlantState(NamedTuple):
 
 FINEST = 8
 """Steps of the finest integration for each step of the fine one."""
+UNLOADED = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 SHARP_TURN = 1.0
 """Share of the friction's smoothing velocity that may pass in one period before the finest integration is needed."""
 
@@ -60,12 +62,15 @@ def dry_friction(plant, omega):
 
 
 @inlined
-def motion(plant, y, q, q_rate, tau_e, tau_ms, load_l, load_e):
+def motion(plant, met, y, q, q_rate, tau_e, tau_ms, load_l, load_e):
     """Return the time derivative of y = (theta_l, theta~, theta_ms, omega_l, omega~, omega_ms), Eqs. (1)-(2).
 
-    `q`, `q_rate` are the lag's share of theta_e and theta_e'; `load_l`, `load_e` the disturbance torques [N m].
+    `q`, `q_rate` are the lag's share of theta_e and theta_e'; `load_l`, `load_e` the disturbance torques [N m] that are
+    functions of time; `met` the rows and tick time of what depends on the link's state, or None (compiled without it).
     """
     theta_l, theta_e, theta_ms, omega_l, omega_e, omega_ms = y
+    if met is not None:
+        load_l += met_load(met[0], met[1], theta_l, omega_l)
     deflection = theta_e + q - theta_l
     true_omega_e = omega_e + q_rate
     spring = leaf(deflection, theta_ms)
@@ -94,40 +99,48 @@ class LagShares(NamedTuple):
     left: float  # share of the gap that is left at the step's end
 
 
-def lag_shares(lag_s: float, inertia: float, damping: float, step_s: float) -> LagShares:
-    """Return q and q' of J_e q'' + b_e q' = exp(-t / lag), q(0) = q'(0) = 0, at the instants of a step of `step_s` [s]."""
+@inlined
+def lag_share(slow, fast, scale, time):
+    """Return q and q' of J_e q'' + b_e q' = exp(-fast t), q(0) = q'(0) = 0, at `time` [s]."""
+    a, b = -math.expm1(-slow * time), -math.expm1(-fast * time)
+    return scale * (a / slow - b / fast), scale * (b - a)
+
+
+@entry
+def lag_shares(lag_s, per_inertia, damping, step_s):
+    """Return the LagShares of a step of `step_s` [s] on an inertia 1/`per_inertia` [kg m^2] with `damping` [N m s/rad]."""
     if lag_s == 0.0:
-        return LagShares._make([0.0] * len(LagShares._fields))
-    slow, fast = max(damping / inertia, 1e-9), 1.0 / lag_s
+        return LagShares(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    slow, fast = max(damping * per_inertia, 1e-9), 1.0 / lag_s
     if abs(fast - slow) < 1e-6 * fast:
         fast *= 1.0 + 1e-6  # the formula divides by their difference
-    times = [c * step_s for c in INSTANTS[1:]]
-    slow_part = [-math.expm1(-slow * time) for time in times]
-    fast_part = [-math.expm1(-fast * time) for time in times]
-    scale = 1.0 / (inertia * (fast - slow))
-    shift = [scale * (a / slow - b / fast) for a, b in zip(slow_part, fast_part, strict=True)]
-    rate = [scale * (b - a) for a, b in zip(slow_part, fast_part, strict=True)]
-    return LagShares._make([*shift, *rate, math.exp(-step_s / lag_s)])
+    scale = per_inertia / (fast - slow)
+    q2, rate2 = lag_share(slow, fast, scale, C2 * step_s)
+    q3, rate3 = lag_share(slow, fast, scale, C3 * step_s)
+    q4, rate4 = lag_share(slow, fast, scale, C4 * step_s)
+    q5, rate5 = lag_share(slow, fast, scale, C5 * step_s)
+    q6, rate6 = lag_share(slow, fast, scale, step_s)
+    return LagShares(q2, q3, q4, q5, q6, rate2, rate3, rate4, rate5, rate6, math.exp(-step_s / lag_s))
 
 
 @inlined
-def dormand_prince_step(plant, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, h):
+def dormand_prince_step(plant, met, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, loads_ms, h):
     """Return y after one Dormand-Prince step of order 5 and length h [s], with the torques held.
 
-    `gap` is how far the motor's torque still is from `tau_e` [N m] at its start; `loads_l`, `loads_e` are the disturbance
-    torques [N m] at its six instants.
+    `gap` is how far the motor's torque still is from `tau_e` [N m] at its start; `loads_l`, `loads_e`, `loads_ms` are the
+    disturbance torques [N m] of link, motor and stiffness motor at its six instants; `met` as in `motion`.
     """
-    k1 = motion(plant, y, 0.0, 0.0, tau_e, tau_ms, loads_l[0], loads_e[0])
+    k1 = motion(plant, met, y, 0.0, 0.0, tau_e, tau_ms - loads_ms[0], loads_l[0], loads_e[0])
     y2 = shifted_1(y, h, 1 / 5, k1)
-    k2 = motion(plant, y2, gap * lag.q2, gap * lag.rate2, tau_e, tau_ms, loads_l[1], loads_e[1])
+    k2 = motion(plant, met, y2, gap * lag.q2, gap * lag.rate2, tau_e, tau_ms - loads_ms[1], loads_l[1], loads_e[1])
     y3 = shifted_2(y, h, 3 / 40, k1, 9 / 40, k2)
-    k3 = motion(plant, y3, gap * lag.q3, gap * lag.rate3, tau_e, tau_ms, loads_l[2], loads_e[2])
+    k3 = motion(plant, met, y3, gap * lag.q3, gap * lag.rate3, tau_e, tau_ms - loads_ms[2], loads_l[2], loads_e[2])
     y4 = shifted_3(y, h, 44 / 45, k1, -56 / 15, k2, 32 / 9, k3)
-    k4 = motion(plant, y4, gap * lag.q4, gap * lag.rate4, tau_e, tau_ms, loads_l[3], loads_e[3])
+    k4 = motion(plant, met, y4, gap * lag.q4, gap * lag.rate4, tau_e, tau_ms - loads_ms[3], loads_l[3], loads_e[3])
     y5 = shifted_4(y, h, 19372 / 6561, k1, -25360 / 2187, k2, 64448 / 6561, k3, -212 / 729, k4)
-    k5 = motion(plant, y5, gap * lag.q5, gap * lag.rate5, tau_e, tau_ms, loads_l[4], loads_e[4])
+    k5 = motion(plant, met, y5, gap * lag.q5, gap * lag.rate5, tau_e, tau_ms - loads_ms[4], loads_l[4], loads_e[4])
     y6 = shifted_5(y, h, 9017 / 3168, k1, -355 / 33, k2, 46732 / 5247, k3, 49 / 176, k4, -5103 / 18656, k5)
-    k6 = motion(plant, y6, gap * lag.q6, gap * lag.rate6, tau_e, tau_ms, loads_l[5], loads_e[5])
+    k6 = motion(plant, met, y6, gap * lag.q6, gap * lag.rate6, tau_e, tau_ms - loads_ms[5], loads_l[5], loads_e[5])
     theta_l, theta_e, theta_ms, omega_l, omega_e, omega_ms = shifted_5(
         y, h, 35 / 384, k1, 500 / 1113, k3, 125 / 192, k4, -2187 / 6784, k5, 11 / 84, k6
     )
@@ -152,10 +165,21 @@ def steps_of_period(plant, state, tau_e, sample_time_s):
 
 
 @inlined
-def advance_plant(plant, lags, state, tau_e, tau_ms, link_terms, motor_terms, time, sample_time_s):
-    """Return the state one sample period after `time` [s], with the torques [N m] held by the drives, and both loads at `time`.
+def stopped(plant, theta_ms, omega_ms):
+    """Return position [rad] and velocity [rad/s] of the stiffness motor within its inelastic end stops."""
+    if theta_ms < plant.theta_ms_stiff:
+        return plant.theta_ms_stiff, max(omega_ms, 0.0)
+    if theta_ms > plant.theta_ms_soft:
+        return plant.theta_ms_soft, min(omega_ms, 0.0)
+    return theta_ms, omega_ms
 
-    `lags` are the LagShares of a step, for each of the three finenesses. The end stops of the stiffness axis are inelastic.
+
+@inlined
+def advance_plant(plant, lags, state, tau_e, tau_ms, link_terms, motor_terms, time, sample_time_s):
+    """Return the state one sample period after `time` [s], with the torques [N m] held by the drives, and the loads at `time`.
+
+    `lags` are the LagShares of a step, for each of the three finenesses. The terms are constants and sines on link and
+    motor; actuator.parts is for all else.
     """
     y = (state.theta_l, state.theta_e, state.theta_ms, state.omega_l, state.omega_e, state.omega_ms)
     gap = state.motor_torque - tau_e
@@ -172,11 +196,8 @@ def advance_plant(plant, lags, state, tau_e, tau_ms, link_terms, motor_terms, ti
         loads_e = loads_of_step(motor_terms, time, time + step * h, h, steps == 1)
         if step == 0:
             load_l, load_e = loads_l[0], loads_e[0]
-        y = dormand_prince_step(plant, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, h)
+        y = dormand_prince_step(plant, None, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, UNLOADED, h)
         gap *= lag.left
     theta_l, theta_e, theta_ms, omega_l, omega_e, omega_ms = y
-    if theta_ms < plant.theta_ms_stiff:
-        theta_ms, omega_ms = plant.theta_ms_stiff, max(omega_ms, 0.0)
-    elif theta_ms > plant.theta_ms_soft:
-        theta_ms, omega_ms = plant.theta_ms_soft, min(omega_ms, 0.0)
-    return PlantState(theta_l, omega_l, theta_e, omega_e, theta_ms, omega_ms, tau_e + gap), load_l, load_e
+    theta_ms, omega_ms = stopped(plant, theta_ms, omega_ms)
+    return PlantState(theta_l, omega_l, theta_e, omega_e, theta_ms, omega_ms, tau_e + gap), (load_l, load_e, 0.0)

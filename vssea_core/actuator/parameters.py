@@ -70,6 +70,10 @@ class EquilibriumMotor(Part):
         0.0, "torque-loop lag", unit="s", symbol="T_lag", low=0.0, high=5e-3, typical=(0.0, 5e-4), step=1e-5, basis="E",
         meaning="First-order lag of the drive's current loop; 0.1 to 0.5 ms is usual.",
     )
+    torque_delay_s: float = parameter(
+        0.0, "torque delay", unit="s", symbol="T_d", low=0.0, high=0.02, typical=(0.0, 5e-3), step=1e-4, basis="E",
+        meaning="Transport delay of the drive, any fraction of a sample; the controller does not know of it.",
+    )
 
     @model_validator(mode="after")
     def _continuous_within_peak(self) -> Self:
@@ -146,6 +150,14 @@ class Actuator(Part):
     stiffness: StiffnessMechanism = StiffnessMechanism()
 
 
+def _noise(title: str, symbol: str, unit: str, high: float, usual: float, meaning: str) -> float:
+    field: float = parameter(
+        0.0, title, unit=unit, symbol=symbol, low=0.0, high=high, typical=(0.0, usual), step=usual / 100.0, basis="E",
+        meaning=f"Root mean square of the seeded Gaussian noise. {meaning}",
+    )
+    return field
+
+
 class Sensors(Part):
     """What is measured. A resolution of 0 means an ideal sensor."""
 
@@ -162,6 +174,16 @@ class Sensors(Part):
         basis="E", meaning="Counts per turn of the stiffness motor; 0 = ideal.",
     )
     velocities: bool = choice(True, "velocities measured", meaning="Whether ideal velocity signals exist, as the paper assumes.")
+    link_noise: float = _noise("link encoder noise", "σ_l", "rad", 0.1, 1e-4, "Added before rounding to counts; 0 = none.")
+    motor_noise: float = _noise(
+        "motor encoder noise", "σ_e", "rad", 0.1, 1e-5, "At the gear side, added before rounding to counts; 0 = none."
+    )
+    stiffness_noise: float = _noise(
+        "stiffness encoder noise", "σ_ms", "rad", 1.0, 1e-2, "Added before rounding to counts; 0 = none."
+    )
+    velocity_noise: float = _noise(
+        "velocity noise", "σ_ω", "rad/s", 10.0, 1e-1, "Of each of the three velocity signals; 0 = none."
+    )
 
 
 class Timing(Part):

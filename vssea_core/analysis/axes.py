@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from vssea_core.analysis.operating_point import LinearPlant, OperatingPoint
-from vssea_core.control.tuning import Controller, Observer
+from vssea_core.control.tuning import Controller, Observer, SlidingMode
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,10 @@ def _bandwidth(point: OperatingPoint, value: float) -> OperatingPoint:
 
 def _poles(point: OperatingPoint, value: float) -> OperatingPoint:
     controller = point.tuning.controller
+    if not isinstance(controller, SlidingMode) and controller.design != "poles":
+        raise ValueError(
+            "the gains come from an LQR, so there are no poles to vary; choose another axis, or the design by poles"
+        )
     field = "natural_frequency" if "natural_frequency" in type(controller).model_fields else "surface_pole"
     changed_controller = _with(controller, field, value)
     return replace(point, tuning=point.tuning.model_copy(update={"controller": changed_controller}))

@@ -137,9 +137,9 @@ class _Judge:
     def good(self, bandwidths: Numbers) -> NDArray[np.bool_]:
         """Return which of `bandwidths` are stable with the margins asked for, on every plant."""
         rows = [self.prepared[g] if g in self.prepared else _prepared(self.point, g) for g in bandwidths.tolist()]
-        controllers = Controllers.probed(rows, [self.point.theta_ms] * len(rows))
-        pairs = all_pairs(len(rows), len(self.plants.rows))
         delayed = self.point.timing.compute_delay_samples != 0
+        controllers = Controllers.probed(rows, [self.point.theta_ms] * len(rows), delayed)
+        pairs = all_pairs(len(rows), len(self.plants.rows))
         batch = Batch(controllers, self.plants, pairs, self.point.period_s, delayed)
         good = self.least.met(batch.margins(PER_DECADE)[1]) if self.least.asks else batch.radii() < STABLE_RADIUS
         return np.asarray(good.reshape(len(rows), -1).all(axis=1))

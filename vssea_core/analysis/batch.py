@@ -26,14 +26,14 @@ class Controllers:
     theta_ms: Numbers
 
     @classmethod
-    def probed(cls, prepared: Sequence[Numbers], theta_ms: Sequence[float]) -> "Controllers":
-        """Return the controllers of `prepared` tunings, each at its `theta_ms` [rad]."""
+    def probed(cls, prepared: Sequence[Numbers], theta_ms: Sequence[float], delayed: bool) -> "Controllers":
+        """Return the controllers of `prepared` tunings, each at its `theta_ms` [rad], with or without a compute delay."""
         m = len(prepared)
         found = cls(
             np.zeros((m, OBSERVED, OBSERVER_COLUMNS)), np.zeros((m, LAW_COLUMNS)), np.array(theta_ms, dtype=float)
         )
         for i in range(m):
-            probe_controller(prepared[i], found.theta_ms[i], found.observers[i], found.laws[i])
+            probe_controller(prepared[i], found.theta_ms[i], delayed, found.observers[i], found.laws[i])
         return found
 
 

@@ -95,7 +95,9 @@ def scenario_of(point: OperatingPoint, duration_s: float, limits: bool = False) 
     if not limits:
         changes |= {"peak_torque": 1e4, "continuous_torque": 1e4, "no_load_speed": 1000.0, "stall_torque": 1e5}
     motor = EquilibriumMotor.model_validate(changes)
-    mechanism = StiffnessMechanism(spring_constant=plant.spring_constant, softest=1.0, stiffest=1e5)
+    mechanism = StiffnessMechanism(
+        spring_constant=plant.spring_constant, softest=point.stiffness / 4.0, stiffest=point.stiffness * 4.0
+    )
     link = Link(inertia=plant.link_inertia, damping=plant.link_damping)
     return Scenario(
         name="certificate",

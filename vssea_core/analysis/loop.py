@@ -117,7 +117,8 @@ class Pieces:
         self.period_s, self.theta_ms = point.period_s, point.theta_ms
         self.compute_delay = point.timing.compute_delay_samples != 0
         self.observer, self.law = np.zeros((OBSERVED, OBSERVER_COLUMNS)), np.zeros(LAW_COLUMNS)
-        probe_controller(prepare(point.tuning, self.period_s), self.theta_ms, self.observer, self.law)
+        gains = prepare(point.tuning, self.period_s, (point.stiffness, point.stiffness))
+        probe_controller(gains, self.theta_ms, self.compute_delay, self.observer, self.law)
 
     def system(self, plant: LinearPlant, inputs: int = INPUTS) -> System:
         """Return A, B, C, D with `plant` and the first `inputs` inputs (assembly.NO_INPUTS, BREAKS or INPUTS)."""

@@ -198,13 +198,15 @@ def row_batch(
     here = change_y(point, value)
     period, delayed = point.period_s, point.timing.compute_delay_samples != 0
     if x.axis.side == "plant":
-        controllers = Controllers.probed([prepared[0]], [here.theta_ms])
+        controllers = Controllers.probed([prepared[0]], [here.theta_ms], delayed)
         plants = Plants.of([x.axis.change(here, each).plant for each in x.values], period)
     else:
         angles = [
             x.axis.change(here, each).theta_ms if x.axis.side == "stiffness" else here.theta_ms for each in x.values
         ]
-        controllers = Controllers.probed(prepared if len(prepared) > 1 else [prepared[0]] * len(angles), angles)
+        controllers = Controllers.probed(
+            prepared if len(prepared) > 1 else [prepared[0]] * len(angles), angles, delayed
+        )
         plants = Plants.of([here.plant], period)
     return Batch(controllers, plants, all_pairs(len(controllers.theta_ms), len(plants.rows)), period, delayed)
 

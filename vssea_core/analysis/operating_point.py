@@ -46,8 +46,9 @@ class LinearPlant:
         """Return the actuator as it is."""
         link, motor, mechanism = actuator.link, actuator.motor, actuator.stiffness
         return cls(
-            link.inertia, link.damping, motor.inertia, motor.damping, mechanism.spring_constant, motor.torque_lag_s
-        )
+            link.inertia, link.damping, motor.inertia, motor.damping, mechanism.spring_constant, motor.torque_lag_s,
+            motor.torque_delay_s,
+        )  # fmt: skip
 
     def scaled(self, **factors: float) -> Self:
         """Return this plant with fields multiplied by `factors`, e.g. scaled(link_inertia=1.2)."""
@@ -74,7 +75,7 @@ class LinearPlant:
 
 @lru_cache(maxsize=1024)
 def _lag_row(lag_s: float, inertia: float, damping: float, step_s: float) -> NDArray[np.float64]:
-    return np.array(lag_shares(lag_s, inertia, damping, step_s))
+    return np.array(lag_shares(lag_s, 1.0 / inertia, damping, step_s))
 
 
 _FRICTIONLESS = plant_numbers(Actuator(), 1e-3)._replace(

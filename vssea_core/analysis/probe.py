@@ -13,8 +13,9 @@ from vssea_core.actuator.dynamics import LagShares, Plant, PlantState, advance_p
 from vssea_core.actuator.sensors import Measurement
 from vssea_core.compiled import entry
 from vssea_core.control.law import StiffnessTarget, Target, act
-from vssea_core.control.observer import Channel, Memory, Spring, observe
-from vssea_core.control.packing import MEMORY_SIZE, keep_memory, loaded_memory, loaded_prepared
+from vssea_core.control.observer import Channel, Spring, observe
+from vssea_core.control.packing import MEMORY_SIZE, ROW, keep_memory, loaded_memory, loaded_prepared, take_row
+from vssea_core.control.prediction import predicted
 from vssea_core.signals.disturbances import CONSTANT
 
 TINY = 2.0**-100  # a power of two, so dividing by it is exact; squares of it neither matter nor underflow
@@ -24,7 +25,7 @@ PLANT_SIZE, LAG_SIZE = len(Plant._fields), len(LagShares._fields)
 def _named_entries() -> dict[str, int]:
     """Return place by name of every number in a packed Memory."""
     parts = {"link": Channel._fields, "motor": Channel._fields, "stiffness": Channel._fields, "spring": Spring._fields}
-    names = [f"{part}.{field}" for part in Memory._fields for field in parts[part]]
+    names = [f"{part}.{field}" for part in parts for field in parts[part]]
     return {name: place for place, name in enumerate(names)}
 
 
@@ -54,18 +55,25 @@ LAW_COLUMNS = OBSERVED + 1 + REFERENCES
 
 
 @entry
-def one_tick(prepared_row, memory_row, y, applied, reference, stiffness_reference, following, torques):
+def one_tick(
+    prepared_row, memory_row, y, applied, waiting, delayed, reference, stiffness_reference, following, torques
+):
     """Write the memory (n,) after the observers to `following`, and the torques (2,) of the law on `memory_row` as it is.
 
-    `y` (6,) is a Measurement, `applied` (2,) are both torques [N m] of the period that ended, `reference` (5,) and
-    `stiffness_reference` (3,) what the law is asked for. A memory of zeros has not started: `following` is then at rest.
+    `y` (6,) is a Measurement, `applied` (2,) are both torques [N m] of the period that ended, `waiting` the motor torque [N m]
+    of the coming one if the loop is `delayed`, `reference` (5,) and `stiffness_reference` (3,) what the law is asked for, the
+    first rad being where gains are taken. A memory of zeros has not started: `following` is then at rest.
     """
-    prepared = loaded_prepared(prepared_row)
+    row = np.empty(ROW)
+    take_row(prepared_row, stiffness_reference[0], row)
+    prepared = loaded_prepared(prepared_row, row)
     memory = loaded_memory(memory_row)
     measured = Measurement(y[0], y[1], y[2], y[3], y[4], y[5])
     keep_memory(following, observe(prepared, memory, measured, applied[0], applied[1]))
     target = Target(reference[0], reference[1], reference[2], reference[3], reference[4])
     hold = StiffnessTarget(stiffness_reference[0], stiffness_reference[1], stiffness_reference[2])
+    if delayed and prepared.law.predict != 0.0:
+        memory = predicted(prepared.law, memory, waiting, stiffness_reference[2])
     terms = act(prepared.law, memory, target, hold)
     torques[0], torques[1] = terms.motor_torque, terms.stiffness_torque
 
@@ -110,17 +118,18 @@ def probe_plant(plant_row, lag_row, theta_ms, step_s, columns):
 
 
 @entry
-def probe_controller(prepared_row, theta_ms, observer, law):
+def probe_controller(prepared_row, theta_ms, delayed, observer, law):
     """Write the observers to `observer` (13, 18) and the law to `law` (19,), at rest at `theta_ms` [rad].
 
     Columns of `observer`: memory, measurement (MEASURED), torque applied over the period that ended; rows: memory after it.
-    Columns of `law`: memory after the observers, torque that waits for a compute delay, r and its four derivatives.
+    Columns of `law`: memory after the observers, torque that waits for a compute delay, r and its four derivatives (those of
+    a sample later where the delay is compensated). `delayed` says whether there is a compute delay.
     """
     rest, memory, following = np.zeros(MEMORY_SIZE), np.zeros(MEMORY_SIZE), np.zeros(MEMORY_SIZE)
     y, applied, torques = np.zeros(6), np.zeros(2), np.zeros(2)
     reference, hold = np.zeros(REFERENCES), np.zeros(3)
     y[2] = hold[0] = theta_ms
-    one_tick(prepared_row, memory, y, applied, reference, hold, rest, torques)
+    one_tick(prepared_row, memory, y, applied, 0.0, delayed, reference, hold, rest, torques)
     for column in range(OBSERVED + 11):
         memory[:] = rest
         y[0] = y[1] = y[3] = y[4] = 0.0
@@ -134,7 +143,8 @@ def probe_controller(prepared_row, theta_ms, observer, law):
             applied[0] = TINY
         elif column > OBSERVED + 5:
             reference[column - OBSERVED - 6] = TINY
-        one_tick(prepared_row, memory, y, applied, reference, hold, following, torques)
+        waiting = TINY if column == OBSERVED + 5 else 0.0
+        one_tick(prepared_row, memory, y, applied, waiting, delayed, reference, hold, following, torques)
         if column < OBSERVED + 5:
             for i in range(OBSERVED):
                 observer[i, column] = following[POSITION_ENTRIES[i]] / TINY
@@ -150,7 +160,7 @@ STIFFNESS_STATES, STIFFNESS_OBSERVED = 2, len(STIFFNESS_NAMES)
 
 
 @entry
-def probe_stiffness_axis(plant_row, prepared_row, theta_ms, period_s, plant_columns, observer, law):
+def probe_stiffness_axis(plant_row, prepared_row, theta_ms, period_s, delayed, plant_columns, observer, law):
     """Write the stiffness axis, the spring unloaded: plant (2, 3), observer (6, 9) and law (7,), as the two above.
 
     Its state is [theta_ms, theta_ms'] and is measured whole; about a position that is not zero, so by central differences.
@@ -160,7 +170,7 @@ def probe_stiffness_axis(plant_row, prepared_row, theta_ms, period_s, plant_colu
     reference, hold, loads = np.zeros(REFERENCES), np.zeros(3), np.zeros(2)
     state, moved = np.zeros(7), np.zeros(7)
     y[2] = hold[0] = theta_ms
-    one_tick(prepared_row, memory, y, applied, reference, hold, rest, torques)
+    one_tick(prepared_row, memory, y, applied, 0.0, delayed, reference, hold, rest, torques)
     plant_columns[:], observer[:], law[:] = 0.0, 0.0, 0.0
     for side in range(2):
         h = STEP_OF_STIFFNESS_MOTOR if side == 0 else -STEP_OF_STIFFNESS_MOTOR
@@ -181,7 +191,7 @@ def probe_stiffness_axis(plant_row, prepared_row, theta_ms, period_s, plant_colu
                 y[5] = h
             else:
                 applied[1] = h
-            one_tick(prepared_row, memory, y, applied, reference, hold, following, torques)
+            one_tick(prepared_row, memory, y, applied, 0.0, delayed, reference, hold, following, torques)
             for i in range(STIFFNESS_OBSERVED):
                 observer[i, column] += following[STIFFNESS_ENTRIES[i]] / (2.0 * h)
             if column < STIFFNESS_OBSERVED:

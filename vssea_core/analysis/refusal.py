@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 from vssea_core.actuator.parameters import Timing
 from vssea_core.analysis.operating_point import LAYERED
 from vssea_core.analysis.sampled_loop import Stability, stability, stiffness_axis_stability
-from vssea_core.control.tuning import SlidingMode, StateFeedback, Tuning
+from vssea_core.control.tuning import Baseline, Controller, NoObserver, SlidingMode, StateFeedback, Tuning
 
 HALVINGS = 12
 
@@ -59,61 +60,94 @@ def _stiffness_remedy(tuning: Tuning, timing: Timing, stiffness: float) -> str:
     ):
 
         def stable(value: float, field: str = field) -> bool:
-            changed = _with(tuning, stiffness_loop=loop.model_copy(update={field: value}))
+            changed = tuning.model_copy(update={"stiffness_loop": loop.model_copy(update={field: value})})
             return stiffness_axis_stability(changed, timing, stiffness).stable
 
-        value = _largest(stable, 1.0, getattr(loop, field))
-        if value:
+        value = _nearest(stable, 1.0, getattr(loop, field))
+        if value is not None:
             found.append(f"{words} up to about {value:.3g} rad/s")
     return f"{', or '.join(found)} would be stable" if found else "no single change is enough, so lower both bandwidths"
 
 
 def _described(tuning: Tuning) -> str:
-    controller, observer = tuning.controller, tuning.observer
-    if isinstance(controller, StateFeedback):
-        law = f"state feedback with poles at {controller.natural_frequency:.4g} rad/s"
-    else:
+    observer = tuning.observer
+    watched = (
+        "no observer"
+        if isinstance(observer, NoObserver)
+        else f"a {observer.kind} observer of {observer.bandwidth:.4g} rad/s"
+    )
+    return f"{_law(tuning.controller)} and {watched}"
+
+
+def _law(controller: Controller) -> str:
+    if isinstance(controller, SlidingMode):
         rate = controller.switching_gain / controller.layer_width
-        law = f"sliding mode with surface poles at {controller.surface_pole:.4g} rad/s and ρ/φ = {rate:.4g} 1/s"
-    return f"{law} and a {observer.kind} observer of {observer.bandwidth:.4g} rad/s"
+        return f"sliding mode with surface poles at {controller.surface_pole:.4g} rad/s and ρ/φ = {rate:.4g} 1/s"
+    name = "the baseline" if isinstance(controller, Baseline) else "state feedback"
+    if controller.design == "poles":
+        return f"{name} with poles at {controller.natural_frequency:.4g} rad/s"
+    return f"{name} by LQR"
+
+
+class Knob(NamedTuple):
+    """One field that makes a loop calmer as it falls (or, for a weight, rises), and how to say how far it may go."""
+
+    part: str
+    field: str
+    value: float
+    calmest: float
+    sentence: str
+
+
+def _knobs(tuning: Tuning) -> list[Knob]:
+    controller, observer = tuning.controller, tuning.observer
+    knobs: list[Knob] = []
+    if isinstance(controller, SlidingMode):
+        knobs = [
+            Knob("controller", "surface_pole", controller.surface_pole, 0.5, "surface poles up to about {:.3g} rad/s"),
+            Knob("controller", "switching_gain", controller.switching_gain, 0.5 * controller.layer_width,
+                 "a switching gain up to about {:.3g} rad/s⁴ with this boundary layer"),
+        ]  # fmt: skip
+    elif controller.design == "poles":
+        knobs = [
+            Knob("controller", "natural_frequency", controller.natural_frequency, 0.5, "poles up to about {:.3g} rad/s")
+        ]
+    elif controller.design == "lqr_plant":
+        knobs = [
+            Knob("controller", "torque_weight", controller.torque_weight, 1e12, "a torque weight from about {:.3g} on")
+        ]
+    elif isinstance(controller, StateFeedback):
+        knobs = [Knob("controller", "snap_weight", controller.snap_weight, 1e12, "a snap weight from about {:.3g} on")]
+    if not isinstance(observer, NoObserver):
+        knobs.append(
+            Knob("observer", "bandwidth", observer.bandwidth, 1.0, "an observer bandwidth up to about {:.3g} rad/s")
+        )
+    return knobs
 
 
 def _remedy(tuning: Tuning, stable: Callable[[Tuning], bool]) -> str:
-    """Return what would work: the largest poles, switching gain or bandwidth below the present ones, found by halving."""
-    controller, observer = tuning.controller, tuning.observer
+    """Return what would work: for each knob the value nearest the present one, found by halving."""
     found = []
-    if isinstance(controller, StateFeedback):
-        pole = _largest(lambda p: stable(_with(tuning, controller=controller.model_copy(update={"natural_frequency": p}))),
-                        0.5, controller.natural_frequency)  # fmt: skip
-        if pole:
-            found.append(f"poles up to about {pole:.3g} rad/s")
-    else:
-        pole = _largest(lambda p: stable(_with(tuning, controller=controller.model_copy(update={"surface_pole": p}))),
-                        0.5, controller.surface_pole)  # fmt: skip
-        if pole:
-            found.append(f"surface poles up to about {pole:.3g} rad/s")
-        gain = _largest(lambda r: stable(_with(tuning, controller=controller.model_copy(update={"switching_gain": r}))),
-                        controller.layer_width * 0.5, controller.switching_gain)  # fmt: skip
-        if gain:
-            found.append(f"a switching gain up to about {gain:.3g} rad/s⁴ with this boundary layer")
-    bandwidth = _largest(lambda g: stable(_with(tuning, observer=observer.model_copy(update={"bandwidth": g}))),
-                         1.0, observer.bandwidth)  # fmt: skip
-    if bandwidth:
-        found.append(f"an observer bandwidth up to about {bandwidth:.3g} rad/s")
+    for knob in _knobs(tuning):
+
+        def works(value: float, knob: Knob = knob) -> bool:
+            part = getattr(tuning, knob.part).model_copy(update={knob.field: value})
+            return stable(tuning.model_copy(update={knob.part: part}))
+
+        near = _nearest(works, knob.calmest, knob.value)
+        if near is not None:
+            found.append(knob.sentence.format(near))
     if not found:
-        return "no single change of poles or bandwidth is enough, so lower both"
+        return "no single change of gains or bandwidth is enough, so lower both"
     return f"{', or '.join(found)} would be stable"
 
 
-def _with(tuning: Tuning, **parts: object) -> Tuning:
-    return tuning.model_copy(update=parts)
-
-
-def _largest(works: Callable[[float], bool], low: float, high: float) -> float | None:
-    """Return about the largest value below `high` that works, by halving on a logarithmic scale; None if `low` does not."""
-    if low >= high or not works(low):
+def _nearest(works: Callable[[float], bool], calmest: float, present: float) -> float | None:
+    """Return about the value nearest to `present` that works, by halving on a logarithmic scale; None if `calmest` fails."""
+    if calmest == present or not works(calmest):
         return None
-    for _ in range(HALVINGS):
-        middle = math.sqrt(low * high)
-        low, high = (middle, high) if works(middle) else (low, middle)
-    return 0.99 * low  # so that the three digits that are printed stay on the stable side
+    good, bad = calmest, present
+    for _ in range(HALVINGS if 1e-3 < calmest / present < 1e3 else 2 * HALVINGS):
+        middle = math.sqrt(good * bad)
+        good, bad = (middle, bad) if works(middle) else (good, middle)
+    return good * (0.99 if good < bad else 1.01)  # so that the three digits that are printed stay on the stable side

@@ -97,8 +97,9 @@ class _Search:
 
     def __init__(self, point: OperatingPoint) -> None:
         self.plant, self.period_s = point.plant, point.period_s
-        self.controllers = Controllers.probed([prepare(point.tuning, point.period_s)], [point.theta_ms])
         self.delayed = point.timing.compute_delay_samples != 0
+        gains = prepare(point.tuning, point.period_s, (point.stiffness, point.stiffness))
+        self.controllers = Controllers.probed([gains], [point.theta_ms], self.delayed)
 
     def border(self, name: str, places: NDArray[np.float64]) -> float | None:
         """Return the first place (logarithm of a factor, or delay [s]) where the loop is unstable, on the way along `places`.

@@ -64,9 +64,18 @@ def stiffness_axis_matrix(
     plant = np.zeros((STIFFNESS_STATES, STIFFNESS_STATES + 1))
     observer = np.zeros((STIFFNESS_OBSERVED, STIFFNESS_OBSERVED + STIFFNESS_STATES + 1))
     law = np.zeros(STIFFNESS_OBSERVED + 1)
-    probe_stiffness_axis(np.array(numbers), prepare(tuning, period), theta_ms, period, plant, observer, law)
-    whole = single_step_plant(plant, STIFFNESS_STATES)
     delayed = timing.compute_delay_samples != 0
+    probe_stiffness_axis(
+        np.array(numbers),
+        prepare(tuning, period, (stiffness, stiffness)),
+        theta_ms,
+        period,
+        delayed,
+        plant,
+        observer,
+        law,
+    )
+    whole = single_step_plant(plant, STIFFNESS_STATES)
     measured, estimates = np.arange(STIFFNESS_STATES), np.zeros(2, dtype=np.int64)
     A: Numbers = assembled(whole, measured, observer, law, estimates, 0, False, delayed, NO_INPUTS)[0]
     return A

@@ -158,5 +158,7 @@ class _Search:
 
     def _probed(self, points: list[OperatingPoint]) -> Controllers:
         return Controllers.probed(
-            [prepare(each.tuning, each.period_s) for each in points], [each.theta_ms for each in points]
+            [prepare(each.tuning, each.period_s, (each.stiffness, each.stiffness)) for each in points],
+            [each.theta_ms for each in points],
+            points[0].timing.compute_delay_samples != 0,
         )

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from vssea_core.actuator.spring import leaf
 from vssea_core.compiled import inlined
+from vssea_core.control.law import NO_OBSERVER, POSITION_FORM
 
 
 class ObserverGains(NamedTuple):
@@ -78,6 +79,7 @@ class Memory(NamedTuple):
     motor: Channel
     stiffness: Channel
     spring: Spring
+    twisting: float  # integral of the super-twisting law [rad/s^4]
 
 
 @inlined
@@ -129,11 +131,14 @@ def started(model, y, applied_e, applied_ms):
     d_l = tau_s / model.link_inertia
     d_e = (applied_e - tau_s) / model.motor_inertia
     d_ms = (applied_ms - tau_back) / model.stiffness_inertia
+    if model.observer == NO_OBSERVER:
+        d_l = d_e = 0.0
     return Memory(
         Channel(y.theta_l, 0.0, d_l, 0.0, 0.0, y.theta_l),
         Channel(y.theta_e, 0.0, d_e, 0.0, 0.0, y.theta_e),
         Channel(y.theta_ms, 0.0, d_ms, 0.0, 0.0, y.theta_ms),
         shape,
+        0.0,
     )
 
 
@@ -155,12 +160,13 @@ def observe(prepared, memory, y, applied_e, applied_ms):
     phi_e0, phi_e1 = (applied_e - tau_s0) * per_e, (applied_e - tau_s1) * per_e
     phi_ms0, phi_ms1 = (applied_ms - back0) * per_ms, (applied_ms - back1) * per_ms
     link, motor, stiffness = memory.link, memory.motor, memory.stiffness
-    if law.position_form != 0.0:
+    if law.observer == POSITION_FORM:
         return Memory(
             updated_position_form(prepared.link, link, y.theta_l, phi_l0, phi_l1),
             updated_position_form(prepared.motor, motor, y.theta_e, phi_e0, phi_e1),
             updated_position_form(prepared.stiffness, stiffness, y.theta_ms, phi_ms0, phi_ms1),
             shape,
+            memory.twisting,
         )
     omega_l, omega_e, omega_ms = y.omega_l, y.omega_e, y.omega_ms
     if law.difference_gain != 0.0:
@@ -181,4 +187,5 @@ def observe(prepared, memory, y, applied_e, applied_ms):
             phi_ms0 - b_ms * stiffness.omega, phi_ms1 - b_ms * omega_ms,
         ),
         shape,
+        memory.twisting,
     )  # fmt: skip

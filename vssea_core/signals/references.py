@@ -5,12 +5,26 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from vssea_core.compiled import entry, inlined
+from vssea_core.compiled import called, entry, inlined
 from vssea_core.control.law import Target
+from vssea_core.signals.courses import (
+    HEAD,
+    chirp,
+    chirp_row,
+    filtered_step,
+    jog,
+    jog_row,
+    multisine,
+    numbers,
+    plan_jog,
+)
 from vssea_core.signals.documents import Reference
+from vssea_core.signals.recorded import recorded, recorded_row
+from vssea_core.signals.smooth_step import faded_in, moved
 
-SINE, MOVE, STEP = 0.0, 1.0, 2.0
-REFERENCE_SIZE = 8
+SINE, MOVE, STEP, MULTISINE, FILTERED_STEP, CHIRP, JOG, RECORDED = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0
+REFERENCE_SIZE = HEAD
+"""Numbers of a row that all kinds have; a kind may have more behind them."""
 TRANSITION_SIZE = 5
 TRANSITION_RATE = 12.0
 """Five-fold pole [rad/s] at which a live change of the reference is worked off."""
@@ -18,48 +32,34 @@ TIME_SLACK_S = 1e-9
 
 
 def reference_row(reference: Reference, set_at_s: float = 0.0) -> NDArray[np.float64]:
-    """Return the reference as 8 numbers for the kernel; the first is its kind, the last when it was set [s]."""
-    if reference.kind == "sine":
-        frequency = 2.0 * math.pi * reference.frequency_hz
-        numbers = (SINE, reference.amplitude, frequency, reference.offset, reference.fade_in_s, 0.0, 0.0)
-        return np.array([*numbers, set_at_s])
-    kind, duration = (MOVE, reference.duration_s) if reference.kind == "move" else (STEP, 0.0)
-    places = (reference.origin, reference.target, reference.start_s)
-    return np.array([kind, *places, duration, reference.dwell_s, float(reference.repeat), set_at_s])
-
-
-@inlined
-def smooth_step(x):
-    """Return the 9th-order polynomial from 0 to 1 over 0 <= x <= 1, flat to the fourth derivative, and four derivatives."""
-    if x <= 0.0:
-        return Target(0.0, 0.0, 0.0, 0.0, 0.0)
-    if x >= 1.0:
-        return Target(1.0, 0.0, 0.0, 0.0, 0.0)
-    u = x * (1.0 - x)
-    v = 1.0 - 2.0 * x
-    value = x * x * x * x * x * (126.0 + x * (-420.0 + x * (540.0 + x * (-315.0 + 70.0 * x))))
-    return Target(
-        value,
-        630.0 * u * u * u * u,
-        2520.0 * u * u * u * v,
-        7560.0 * u * u * v * v - 5040.0 * u * u * u,
-        15120.0 * u * v * v * v - 45360.0 * u * u * v,
-    )
-
-
-@inlined
-def moved(origin, target, time, duration):
-    """Return the rest-to-rest move [rad] of `duration` [s] at `time` since its start, and four derivatives."""
-    s = smooth_step(time / duration)
-    rate = 1.0 / duration
-    size = target - origin
-    return Target(
-        origin + size * s.r,
-        size * rate * s.r1,
-        size * rate**2 * s.r2,
-        size * rate**3 * s.r3,
-        size * rate**4 * s.r4,
-    )
+    """Return the reference as numbers (n,) for the kernel: its kind, six numbers, when it was set [s], and what else it needs."""
+    match reference.kind:
+        case "sine":
+            frequency = 2.0 * math.pi * reference.frequency_hz
+            row = [reference.amplitude, frequency, reference.offset, reference.fade_in_s, 0.0, 0.0, 0.0]
+            return numbers(SINE, row, set_at_s)
+        case "move":
+            row = [reference.origin, reference.target, reference.start_s, reference.duration_s]
+            return numbers(MOVE, [*row, reference.dwell_s, float(reference.repeat), 0.0], set_at_s)
+        case "step":
+            row = [reference.origin, reference.target, reference.start_s, 0.0]
+            return numbers(STEP, [*row, reference.dwell_s, float(reference.repeat), 0.0], set_at_s)
+        case "multisine":
+            parts = reference.components
+            sines = [x for p in parts for x in (p.amplitude, 2.0 * math.pi * p.frequency_hz, p.phase)]
+            row = [reference.offset, reference.fade_in_s, float(len(parts)), 0.0, 0.0, 0.0, 0.0]
+            return numbers(MULTISINE, [*row, *sines], set_at_s)
+        case "filtered_step":
+            row = [reference.origin, reference.target, reference.start_s, reference.bandwidth, reference.dwell_s]
+            return numbers(FILTERED_STEP, [*row, float(reference.repeat), 0.0], set_at_s)
+        case "chirp":
+            return numbers(CHIRP, chirp_row(reference), set_at_s)
+        case "jog":
+            jogging = numbers(JOG, jog_row(reference), set_at_s)
+            plan_jog(jogging)
+            return jogging
+        case "recorded":
+            return numbers(RECORDED, recorded_row(reference), set_at_s)
 
 
 @inlined
@@ -68,16 +68,21 @@ def faded_sine(amplitude, w, offset, fade_in_s, time):
     sine = amplitude * math.sin(w * time)
     cosine = amplitude * math.cos(w * time)
     f0, f1, f2, f3, f4 = offset + sine, w * cosine, -w * w * sine, -w * w * w * cosine, w * w * w * w * sine
-    if time >= fade_in_s:
-        return Target(f0, f1, f2, f3, f4)
-    s = moved(0.0, 1.0, time, fade_in_s)
-    return Target(
-        s.r * f0,
-        s.r * f1 + s.r1 * f0,
-        s.r * f2 + 2.0 * s.r1 * f1 + s.r2 * f0,
-        s.r * f3 + 3.0 * s.r1 * f2 + 3.0 * s.r2 * f1 + s.r3 * f0,
-        s.r * f4 + 4.0 * s.r1 * f3 + 6.0 * s.r2 * f2 + 4.0 * s.r3 * f1 + s.r4 * f0,
-    )
+    return faded_in(Target(f0, f1, f2, f3, f4), fade_in_s, time)
+
+
+@called
+def other_course(row, time):
+    """Return the Target of the kinds that few runs use, at `time` [s] since it was set."""
+    if row[0] == MULTISINE:
+        return multisine(row, time)
+    if row[0] == FILTERED_STEP:
+        return filtered_step(row, time)
+    if row[0] == CHIRP:
+        return chirp(row, time)
+    if row[0] == JOG:
+        return jog(row, time)
+    return recorded(row, time)
 
 
 @inlined
@@ -86,6 +91,8 @@ def reference_at(row, now):
     time = now - row[7]
     if row[0] == SINE:
         return faded_sine(row[1], row[2], row[3], row[4], time)
+    if row[0] > STEP:
+        return other_course(row, time)
     origin, target, since = row[1], row[2], time - row[3] + TIME_SLACK_S
     if since < 0.0:
         return Target(origin, 0.0, 0.0, 0.0, 0.0)
@@ -131,12 +138,18 @@ def decay_transition(y, time):
 def change_reference(old, new, now, transition):
     """Add to `transition` (5) what keeps the reference continuous as row `old` gives way to `new` at `now` [s].
 
-    A step is raw by nature: changing to one drops what was left.
+    A step is raw by nature: changing to one drops what was left. A jog starts from where the reference is: its row is
+    given the present position and velocity.
     """
     if new[0] == STEP:
         transition[:] = 0.0
         return
-    a, b = reference_at(old, now), reference_at(new, now)
+    a = reference_at(old, now)
+    if new[0] == JOG:
+        present = with_transition(a, transition)
+        new[1], new[2] = present.r, present.r1
+        plan_jog(new)
+    b = reference_at(new, now)
     w = TRANSITION_RATE
     z, z1, z2, z3, z4 = a.r - b.r, a.r1 - b.r1, a.r2 - b.r2, a.r3 - b.r3, a.r4 - b.r4
     transition[0] += z

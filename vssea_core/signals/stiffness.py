@@ -15,7 +15,7 @@ from vssea_core.compiled import inlined
 from vssea_core.control.law import StiffnessTarget
 from vssea_core.control.tuning import Tuning
 from vssea_core.signals.documents import StiffnessReference
-from vssea_core.signals.references import moved
+from vssea_core.signals.smooth_step import moved
 
 CONSTANT, MOVE = 0.0, 1.0
 MAX_STIFFNESS_RATE = 3000.0  # N m/rad/s

@@ -1,4 +1,7 @@
-"""Figures of merit of recorded samples, each defined once. Never from a moving end sample: over a stated window."""
+"""Figures of merit of recorded samples, each defined once. Never from a moving end sample: over a stated window.
+
+Those that need a stated final value or instant are in step_response, settling and events.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -47,6 +50,14 @@ def _saturated(rows: Rows) -> float:
     return 100.0 * float(np.mean((bits & TORQUE_LIMITS) != 0)) if len(rows) else 0.0
 
 
+def _saturated_s(rows: Rows) -> float:
+    time = _column(rows, "time")
+    if len(time) < 2:
+        return 0.0
+    period = float(time[-1] - time[0]) / (len(time) - 1)
+    return _saturated(rows) / 100.0 * len(time) * period
+
+
 METRICS: tuple[Metric, ...] = (
     Metric("peak_error", "peak error", "rad", "Largest |reference - link|.", _of("error", _peak)),
     Metric("rms_error", "RMS error", "rad", "Root mean square of reference - link.", _of("error", _rms)),
@@ -62,12 +73,20 @@ METRICS: tuple[Metric, ...] = (
         _of("motor_torque", lambda torque: _rms(np.diff(torque))),
     ),
     Metric("saturated", "saturated", "%", "Share of samples in which a limit held the motor torque back.", _saturated),
+    Metric("saturated_time", "time saturated", "s", "Time in which a limit held the motor torque back.", _saturated_s),
     Metric(
         "observer_error",
         "observer error",
         "N·m",
         "Root mean square of link disturbance - estimate.",
         lambda rows: _rms(_column(rows, "link_disturbance") - _column(rows, "link_disturbance_estimate")),
+    ),
+    Metric(
+        "motor_observer_error",
+        "motor observer error",
+        "N·m",
+        "Root mean square of motor disturbance, dry friction included, - estimate.",
+        lambda rows: _rms(_column(rows, "motor_disturbance") - _column(rows, "motor_disturbance_estimate")),
     ),
 )
 

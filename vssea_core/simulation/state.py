@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 from vssea_core.actuator.drive import Drives, Heat
 from vssea_core.actuator.dynamics import FINEST, LagShares, Plant, PlantState, lag_shares
 from vssea_core.actuator.parameters import Actuator, Timing
-from vssea_core.actuator.sensors import Encoders, encoders
+from vssea_core.actuator.parts import DELAY_LINE, Delay, delay_of
+from vssea_core.actuator.sensors import Encoders, Noise, encoders, noise_of
 from vssea_core.actuator.spring import equilibrium_deflection, stiffness_motor_position
+from vssea_core.actuator.surroundings import met_load_at_rest
 from vssea_core.compiled import inlined
 from vssea_core.control.packing import MEMORY_SIZE
 from vssea_core.scenario import Scenario
-from vssea_core.signals.disturbances import disturbance_rows, load_at
+from vssea_core.signals.disturbances import disturbance_tables, load_at
 from vssea_core.signals.references import TRANSITION_SIZE
 from vssea_core.signals.stiffness import SLEWED_SIZE
 
@@ -28,7 +30,8 @@ PENDING = APPLIED + 2  # torques waiting for a compute delay of one sample
 MEMORY = PENDING + 2
 TRANSITION = MEMORY + MEMORY_SIZE
 SLEWED = TRANSITION + TRANSITION_SIZE
-STATE_SIZE = SLEWED + SLEWED_SIZE
+DELAYED = SLEWED + SLEWED_SIZE  # torques on their way through the drive, the newest first
+STATE_SIZE = DELAYED + DELAY_LINE
 
 
 class Rig(NamedTuple):
@@ -40,6 +43,9 @@ class Rig(NamedTuple):
     encoders: Encoders
     sample_time_s: float
     compute_delay: float
+    torque_lag_s: float
+    delay: Delay
+    noise: Noise
 
 
 @dataclass(frozen=True)
@@ -49,6 +55,7 @@ class Inputs:
     rig: Numbers
     link_terms: Numbers
     motor_terms: Numbers
+    stiffness_terms: Numbers
 
 
 def plant_numbers(actuator: Actuator, sample_time_s: float) -> Plant:
@@ -92,10 +99,18 @@ def drive_numbers(actuator: Actuator, sample_time_s: float) -> Drives:
     )
 
 
-def rig_numbers(plant: Plant, drives: Drives, resolution: Encoders, lag_s: float, timing: Timing) -> Numbers:
-    """Return a simulated rig as one array, in the order of Rig."""
+def rig_numbers(
+    plant: Plant,
+    drives: Drives,
+    resolution: Encoders,
+    lag_s: float,
+    timing: Timing,
+    delay_s: float = 0.0,
+    noise: Noise = Noise(),  # noqa: B008
+) -> Numbers:
+    """Return a simulated rig as one array, in the order of Rig. Raises ValueError if the delay is too long (see delay_of)."""
     period = timing.sample_time_s
-    motor = 1.0 / plant.per_motor_inertia, plant.motor_damping
+    motor = plant.per_motor_inertia, plant.motor_damping
     return np.array(
         [
             *plant,
@@ -106,6 +121,9 @@ def rig_numbers(plant: Plant, drives: Drives, resolution: Encoders, lag_s: float
             *resolution,
             period,
             float(timing.compute_delay_samples),
+            lag_s,
+            *delay_of(delay_s, period),
+            *noise,
         ]
     )
 
@@ -119,6 +137,8 @@ def rig_row(scenario: Scenario) -> Numbers:
         encoders(scenario.sensors, actuator.motor),
         actuator.motor.torque_lag_s,
         scenario.timing,
+        actuator.motor.torque_delay_s,
+        noise_of(scenario.sensors, scenario.seed),
     )
 
 
@@ -129,6 +149,9 @@ _FINEST_AT = _FINE_AT + LAG_SIZE
 _DRIVES_AT = _FINEST_AT + LAG_SIZE
 _ENCODERS_AT = _DRIVES_AT + DRIVES_SIZE
 _TIMING_AT = _ENCODERS_AT + ENCODERS_SIZE
+DELAY_SIZE, NOISE_SIZE = len(Delay._fields), len(Noise._fields)
+_DELAY_AT = _TIMING_AT + 3
+_NOISE_AT = _DELAY_AT + DELAY_SIZE
 
 
 @inlined
@@ -145,35 +168,64 @@ def loaded_rig(row):
         Encoders(*to_fixed_tuple(row[_ENCODERS_AT:_TIMING_AT], ENCODERS_SIZE)),
         row[_TIMING_AT],
         row[_TIMING_AT + 1],
+        row[_TIMING_AT + 2],
+        Delay(*to_fixed_tuple(row[_DELAY_AT:_NOISE_AT], DELAY_SIZE)),
+        Noise(*to_fixed_tuple(row[_NOISE_AT : _NOISE_AT + NOISE_SIZE], NOISE_SIZE)),
     )
 
 
 def equilibrium_state(scenario: Scenario) -> Numbers:
     """Return the state at rest in equilibrium under the disturbances that act at t = 0, with an unstarted controller.
 
-    Raises ValueError if the spring cannot carry the link's load at this stiffness.
+    Raises ValueError if the spring cannot carry the link's load at this stiffness, or a motor cannot hold still.
     """
+    actuator, theta_l = scenario.actuator, scenario.initial.link_position
+    mechanism, inputs = actuator.stiffness, inputs_of(scenario)
+    at = _initial_stiffness_motor_position(scenario)
+    met_load = met_load_at_rest(inputs.link_terms, 0.0, theta_l)
+    link_load = load_at(inputs.link_terms, 0.0) + met_load
+    motor_load, stiffness_load = load_at(inputs.motor_terms, 0.0), load_at(inputs.stiffness_terms, 0.0)
+    try:
+        deflection = equilibrium_deflection(link_load, mechanism.spring_constant, at)
+    except ValueError as error:
+        if met_load == 0.0:
+            raise
+        raise ValueError(
+            f"at initial.link_position {theta_l:g} rad wall and weight load the link with {met_load:g} N·m: {error}, "
+            "or start elsewhere"
+        ) from error
+    back = -12.0 * mechanism.spring_constant * math.sin(deflection / 4.0) ** 2 / at**4
+    if mechanism.back_torque == "paper":
+        back = link_load
+    motor_torque, stiffness_torque = link_load + motor_load, back + stiffness_load
+    _check_holds("motor", motor_torque, actuator.motor.peak_torque)
+    if stiffness_load != 0.0:
+        _check_holds("stiffness motor", stiffness_torque, mechanism.peak_torque)
+    state = np.zeros(STATE_SIZE)
+    state[:PLANT] = PlantState(theta_l, 0.0, theta_l + deflection, 0.0, at, 0.0, motor_torque)
+    state[APPLIED : APPLIED + 2] = state[PENDING : PENDING + 2] = motor_torque, stiffness_torque
+    state[SLEWED : SLEWED + SLEWED_SIZE] = at, at, 0.0, 0.0
+    state[DELAYED:] = motor_torque
+    return state
+
+
+def _initial_stiffness_motor_position(scenario: Scenario) -> float:
     mechanism, model = scenario.actuator.stiffness, scenario.tuning.model
     theta_ms = stiffness_motor_position(scenario.stiffness_reference.stiffness, model.spring_constant)
     stiff = stiffness_motor_position(mechanism.stiffest, mechanism.spring_constant)
     soft = stiffness_motor_position(mechanism.softest, mechanism.spring_constant)
-    at = min(max(theta_ms, stiff), soft)
-    inputs = inputs_of(scenario)
-    link_load, motor_load = load_at(inputs.link_terms, 0.0), load_at(inputs.motor_terms, 0.0)
-    deflection = equilibrium_deflection(link_load, mechanism.spring_constant, at)
-    back = -12.0 * mechanism.spring_constant * math.sin(deflection / 4.0) ** 2 / at**4
-    if mechanism.back_torque == "paper":
-        back = link_load
-    motor_torque = link_load + motor_load
-    state = np.zeros(STATE_SIZE)
-    theta_l = scenario.initial.link_position
-    state[:PLANT] = PlantState(theta_l, 0.0, theta_l + deflection, 0.0, at, 0.0, motor_torque)
-    state[APPLIED : APPLIED + 2] = state[PENDING : PENDING + 2] = motor_torque, back
-    state[SLEWED : SLEWED + SLEWED_SIZE] = at, at, 0.0, 0.0
-    return state
+    return min(max(theta_ms, stiff), soft)
+
+
+def _check_holds(which: str, torque: float, peak: float) -> None:
+    if abs(torque) > peak:
+        raise ValueError(
+            f"the {which} would need {torque:.4g} N·m to hold still at t = 0; expected at most its peak torque {peak:g} N·m, "
+            "so lower the disturbances at t = 0 or let them start later"
+        )
 
 
 def inputs_of(scenario: Scenario) -> Inputs:
     """Return the rig and the disturbance terms of `scenario` as arrays."""
-    terms, period = scenario.disturbances, scenario.timing.sample_time_s
-    return Inputs(rig_row(scenario), disturbance_rows(terms.link, period), disturbance_rows(terms.motor, period))
+    tables = disturbance_tables(scenario.disturbances, scenario.timing.sample_time_s, scenario.seed)
+    return Inputs(rig_row(scenario), *tables)

@@ -1,5 +1,7 @@
-/** Which command changes which section of the document. */
-const COMMANDS = {
+import { valueAt, withValues } from "./scenario_document.js";
+
+/** Which command changes which section of the document while it runs; all else asks for a restart. */
+export const COMMANDS = {
   tuning: "tune",
   reference: "set_reference",
   stiffness_reference: "set_stiffness",
@@ -26,6 +28,12 @@ export class Edits extends EventTarget {
     const takesKind = Object.keys(changes).some((path) => path.endsWith("kind"));
     const before = takesKind ? this.#whole(section) : { changes: this.#present(section, changes) };
     return this.#send(section, { changes }, before, gesture);
+  }
+
+  /** Load the scenario with other values at these paths of the document; it starts again at t = 0. */
+  restart(changes) {
+    const before = Object.keys(changes).map((path) => [path, valueAt(this.document.beginning, path)]);
+    return this.#send("scenario", { changes }, { changes: Object.fromEntries(before) }, Symbol("restart"));
   }
 
   /** Replace a whole section. */
@@ -72,7 +80,10 @@ export class Edits extends EventTarget {
   }
 
   async #command(section, args) {
-    const result = await this.session.command(COMMANDS[section], args);
+    const isRestart = section === "scenario";
+    const result = await (isRestart
+      ? this.session.command("load_scenario", { scenario: withValues(this.document.beginning, args.changes) })
+      : this.session.command(COMMANDS[section], args));
     this.document.applied(section, result.applied);
     return result;
   }

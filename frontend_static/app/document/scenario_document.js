@@ -1,6 +1,17 @@
 /** @returns {any} what lies at a dotted path, or undefined */
 export function valueAt(root, path) {
-  return path.split(".").reduce((part, name) => part?.[name], root);
+  return path === "" ? root : path.split(".").reduce((part, name) => part?.[name], root);
+}
+
+/** @returns {object} a copy of a document with other values at dotted paths */
+export function withValues(root, values) {
+  const copy = structuredClone(root);
+  for (const [path, value] of Object.entries(values)) {
+    const names = path.split(".");
+    const leaf = names.pop();
+    valueAt(copy, names.join("."))[leaf] = value;
+  }
+  return copy;
 }
 
 /**
@@ -12,6 +23,7 @@ export class ScenarioDocument extends EventTarget {
   constructor() {
     super();
     this.scenario = null;
+    this.beginning = null;
     this.preset = null;
     this.by = "";
   }
@@ -20,9 +32,10 @@ export class ScenarioDocument extends EventTarget {
     return valueAt(this.scenario, path);
   }
 
-  /** @param {{scenario: object, preset: object|null, by: string}} message the server's `document` */
-  accept({ scenario, preset, by }) {
+  /** @param {{scenario: object, beginning: object|null, preset: object|null, by: string}} message the server's `document` */
+  accept({ scenario, beginning, preset, by }) {
     this.scenario = scenario;
+    this.beginning = beginning ?? scenario; // as it stands at t = 0, before its sequence changes it
     this.preset = preset ?? null;
     this.by = by ?? "";
     this.#changed(false);

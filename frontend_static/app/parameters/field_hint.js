@@ -1,5 +1,6 @@
 import { element } from "../element.js";
 import { inputText } from "../quantity.js";
+import { wordOf } from "./choice_word.js";
 import { symbol } from "./symbol.js";
 
 const DELAY_MS = 350;
@@ -58,7 +59,7 @@ export function describeField(field, baselineText) {
     Number.isFinite(field.low) && Number.isFinite(field.high)
       ? `Permitted ${inputText(field.low)} to ${inputText(field.high)}${unit}`
       : "";
-  const normal = typeof field.default === "number" ? inputText(field.default) + unit : String(field.default ?? "");
+  const normal = field.isNullable && field.default === null ? "none" : defaultWords(field, unit);
   return [
     { text: field.title, symbol: field.symbol, class: "hint-title" },
     { text: field.description },
@@ -67,4 +68,9 @@ export function describeField(field, baselineText) {
     { text: normal ? `Default ${normal}${source}` : "", class: "hint-dim" },
     { text: baselineText, class: "hint-changed" },
   ];
+}
+
+function defaultWords(field, unit) {
+  if (field.isList) return "";
+  return typeof field.default === "number" ? inputText(field.default) + unit : wordOf(field.default ?? "");
 }

@@ -6,8 +6,9 @@ import { SliderStream } from "./slider_stream.js";
 
 const STEP_GESTURE_MS = 1000;
 const LONG_UNIT = 7;
+const NOTHING = "none";
 
-/** A number: slider, box and unit. */
+/** A number: slider, box and unit. Where the field may be empty, an empty box is “none”, and the slider's far end. */
 export class NumberRow extends ParameterRow {
   #isDragging = false;
   #isTyping = false;
@@ -29,6 +30,7 @@ export class NumberRow extends ParameterRow {
       autocomplete: "off",
       spellcheck: "false",
       "aria-label": label,
+      placeholder: field.isNullable ? NOTHING : null,
     });
     super(field, place, hint, [
       slider,
@@ -52,6 +54,7 @@ export class NumberRow extends ParameterRow {
   }
 
   words(value) {
+    if (value === null) return NOTHING;
     return typeof value === "number"
       ? `${inputText(value)}${this.field.unit ? ` ${this.field.unit}` : ""}`
       : String(value);
@@ -64,7 +67,8 @@ export class NumberRow extends ParameterRow {
   }
 
   #place(value) {
-    this.slider.value = this.scale.position(value);
+    this.slider.value = value === null ? SliderScale.positions : this.scale.position(value);
+    this.slider.classList.toggle("is-empty", value === null);
     this.slider.style.setProperty("--share", this.slider.value / SliderScale.positions);
     this.slider.setAttribute("aria-valuetext", this.words(value));
   }
@@ -78,17 +82,20 @@ export class NumberRow extends ParameterRow {
     slider.addEventListener("input", () => {
       const value = this.scale.value(Number(slider.value));
       slider.style.setProperty("--share", slider.value / SliderScale.positions);
+      slider.classList.remove("is-empty");
       this.box.value = inputText(value);
-      this.stream.move(value);
+      this.#move(value);
     });
     const release = () => {
       this.#isDragging = false;
-      this.settle();
+      if (this.place.restarts) this.#commit();
+      else this.settle();
     };
+    slider.addEventListener("blur", () => this.#commit());
     slider.addEventListener("change", release);
     slider.addEventListener("pointerup", release);
     slider.addEventListener("pointercancel", release);
-    slider.addEventListener("keydown", (event) => this.#stepByKey(event));
+    slider.addEventListener("keydown", (event) => (event.key === "Enter" ? this.#commit() : this.#stepByKey(event)));
     slider.addEventListener("dblclick", () => this.reset());
   }
 
@@ -115,18 +122,24 @@ export class NumberRow extends ParameterRow {
     const direction = event.key === "ArrowUp" || event.key === "ArrowRight" ? 1 : -1;
     const size = event.shiftKey ? 10 : event.altKey ? 0.1 : 1;
     const from = readNumber(this.box.value);
-    const value = this.scale.stepped(Number.isNaN(from) ? this.echoed : from, direction * size);
+    const value = this.scale.stepped(Number.isNaN(from) ? (this.echoed ?? this.scale.low) : from, direction * size);
     this.#isTyping = false;
     this.show(value);
-    this.stream.move(value);
+    this.#move(value);
+  }
+
+  /** Send a value on its way; where each one restarts the run, only keep it until the hand leaves the control. */
+  #move(value) {
+    if (this.place.restarts) this.#isTyping = true;
+    else this.stream.move(value);
   }
 
   async #commit() {
     if (!this.#isTyping) return;
     this.#isTyping = false;
     const typed = this.box.value;
-    const value = readNumber(typed);
-    if (!Number.isFinite(value)) {
+    const value = this.field.isNullable && typed.trim() === "" ? null : readNumber(typed);
+    if (value !== null && !Number.isFinite(value)) {
       this.show(this.echoed);
       this.say(`“${typed.trim()}” is not a number; kept ${this.words(this.echoed)}`, "refused");
     } else if (Object.is(value, this.echoed)) this.show(value);

@@ -2,11 +2,19 @@ import { element } from "../element.js";
 import { PANELS } from "../layout.js";
 import { DisturbancePanel } from "./disturbance_panel.js";
 import { FieldHint } from "./field_hint.js";
+import { GroupedPanel } from "./grouped_panel.js";
 import { PartPanel } from "./part_panel.js";
 import { PresetPanel } from "./preset_panel.js";
 import { ScenarioPanel } from "./scenario_panel.js";
+import { SequencePanel } from "./sequence_panel.js";
 
-const SPECIAL = { scenario: ScenarioPanel, preset: PresetPanel, disturbance: DisturbancePanel };
+const SPECIAL = {
+  scenario: ScenarioPanel,
+  preset: PresetPanel,
+  disturbance: DisturbancePanel,
+  sequence: SequencePanel,
+  grouped: GroupedPanel,
+};
 
 /** The scrolling column of parameter panels, in the order of layout.js; disabled as a whole without a connection. */
 export class ParameterList {

@@ -9,6 +9,7 @@ const NOTE_MS = 6000;
  * focus. Subclasses give `show(value)` and `isBusy`.
  *
  * A row's `place` says where its value lives: {path, short?, read(), write(value, gesture) -> Promise<result>, baseline()}.
+ * With `restarts`, a value is sent only when the hand leaves it: each one starts the run again.
  */
 export class ParameterRow {
   #noteTimer = null;
@@ -36,7 +37,7 @@ export class ParameterRow {
   echo({ own }) {
     const value = this.place.read();
     if (value === undefined) return;
-    const isNew = !Object.is(value, this.echoed);
+    const isNew = !this.isSame(value, this.echoed);
     this.echoed = value;
     this.#mark();
     if (this.isBusy) return;
@@ -46,6 +47,10 @@ export class ParameterRow {
 
   words(value) {
     return String(value);
+  }
+
+  isSame(one, other) {
+    return Object.is(one, other);
   }
 
   /** Send a value; the row then shows what the server made of it. */
@@ -67,8 +72,9 @@ export class ParameterRow {
 
   /** Back to the preset's value, else the loaded scenario's, else the default. */
   reset() {
-    const value = this.place.baseline() ?? this.field.default;
-    if (value !== undefined && value !== null && !this.root.closest("fieldset:disabled")) this.send(value);
+    const then = this.place.baseline();
+    const value = then === undefined ? this.field.default : then;
+    if (value !== undefined && !this.root.closest("fieldset:disabled")) this.send(value);
   }
 
   /** A short sentence under the row; "" removes it. @param {"info"|"warning"|"refused"} tone */
@@ -95,7 +101,7 @@ export class ParameterRow {
 
   #mark() {
     const then = this.place.baseline();
-    this.dot.hidden = then === undefined || Object.is(then, this.echoed);
+    this.dot.hidden = then === undefined || this.isSame(then, this.echoed);
   }
 
   #baselineText() {

@@ -1,6 +1,7 @@
 import { element, setText } from "../element.js";
 import { inputText } from "../quantity.js";
 import { rest } from "../session/rest.js";
+import { wordOf } from "./choice_word.js";
 import { LinePanel } from "./panel.js";
 
 /** Saved tunings: save, apply, delete, and what was changed since. */
@@ -113,6 +114,6 @@ export class PresetPanel {
   }
 
   #words(value) {
-    return typeof value === "number" ? inputText(value) : String(value).replaceAll("_", " ");
+    return typeof value === "number" ? inputText(value) : wordOf(value);
   }
 }

@@ -1,4 +1,4 @@
-import { element } from "../element.js";
+import { element, setText } from "../element.js";
 
 const MOVES = { ArrowLeft: -1, ArrowUp: -1, ArrowRight: 1, ArrowDown: 1 };
 
@@ -8,8 +8,9 @@ const MOVES = { ArrowLeft: -1, ArrowUp: -1, ArrowRight: 1, ArrowDown: 1 };
  */
 export class Segmented {
   /** @param {string} label what is chosen @param {{value: any, text: string, title?: string}[]} options
-   *  @param {(value: any) => void} choose called with what was clicked */
-  constructor(label, options, choose) {
+   *  @param {(value: any) => void} choose called with what was clicked @param {number} [columns] more than fit beside each
+   *  other stand in lines of so many */
+  constructor(label, options, choose, columns) {
     this.shown = undefined;
     this.options = options.map(({ value, text, title }) => ({
       value,
@@ -21,10 +22,21 @@ export class Segmented {
     }));
     this.root = element(
       "div",
-      { class: "segmented", role: "radiogroup", "aria-label": label, keydown: (event) => this.#move(event) },
+      {
+        class: columns ? "segmented is-grid" : "segmented",
+        role: "radiogroup",
+        "aria-label": label,
+        keydown: (event) => this.#move(event),
+      },
       ...this.options.map((option) => option.button),
     );
+    if (columns) this.root.style.setProperty("--columns", columns);
     this.show(undefined);
+  }
+
+  /** Write something else on the button of one alternative. */
+  label(value, text) {
+    setText(this.options.find((option) => option.value === value).button, text);
   }
 
   show(value) {

@@ -1,4 +1,5 @@
 const POSITIONS = 1000;
+const WIDE = 1e4; // beyond such a ratio no one step suits both ends
 
 /** Places a parameter's values on a slider, linearly or by decades, and rounds what the slider gives to useful steps. */
 export class SliderScale {
@@ -33,8 +34,14 @@ export class SliderScale {
 
   /** @returns {number} value moved by some steps and kept inside what is permitted */
   stepped(value, steps) {
-    const next = Number((value + steps * this.field.step).toPrecision(12));
+    const next = Number((value + steps * this.#stepAt(value)).toPrecision(12));
     return Math.min(this.field.high, Math.max(this.field.low, next));
+  }
+
+  /** Over many decades, a step is one in the second digit. */
+  #stepAt(value) {
+    const isWide = this.field.isLogarithmic && this.high / this.low > WIDE;
+    return isWide && value > 0 ? 10 ** (Math.floor(Math.log10(value) + 1e-9) - 1) : this.field.step;
   }
 
   #round(raw) {

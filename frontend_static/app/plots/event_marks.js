@@ -6,6 +6,7 @@ const KINDS = {
   tuning: "dim",
   stiffness: "series-stiffness",
   reference: "dim",
+  sequence: "dim",
   limit: "warning",
   fault: "fault",
   state: "dim",

@@ -1,0 +1,1 @@
+"""Long work: asked for over REST, watched, cancelled."""
