@@ -1,4 +1,4 @@
-"""From a command on the websocket to what it changes, as a page sees it: slider to torque, STOP to zero torque."""
+"""From a command on the websocket to what it changes, as a page sees it: slider to torque and to margins, STOP to zero torque."""
 
 import asyncio
 import multiprocessing
@@ -27,6 +27,21 @@ async def slider(port: int) -> list[float]:
             reply = await page.reply(number)
             tuning_id = reply["result"]["tuning_id"]
             delays.append(await page.until("tuning_id", lambda ids, wanted=tuning_id: ids == wanted) - started)
+            await asyncio.sleep(0.037)
+    return delays
+
+
+async def margins(port: int) -> list[float]:
+    """Return the delays [s] from sending a pole to receiving the margins of the tuning that it made."""
+    delays = []
+    async with live_page(port) as socket:
+        page = LivePage(socket)
+        await page.message()
+        for turn in range(COUNT):
+            started = time.perf_counter()
+            await page.send("tune", changes={"controller.natural_frequency": 20.0 + (turn + 1) % 2})
+            await page.of_type("margins")
+            delays.append(time.perf_counter() - started)
             await asyncio.sleep(0.037)
     return delays
 
@@ -82,7 +97,9 @@ def main() -> None:
     """Print the delays."""
     with running_server() as server:
         row("slider to changed torque, seen on the websocket", lambda: asyncio.run(slider(server.port)))
+        row("slider to its margins, seen on the websocket", lambda: asyncio.run(margins(server.port)))
         row("STOP to zero torque, seen on the websocket, idle", lambda: asyncio.run(stop(server.port)))
         with simulations(server):
             row("the same while three simulations are computed", lambda: asyncio.run(stop(server.port)))
+            row("slider to its margins while three simulations are computed", lambda: asyncio.run(margins(server.port)))
             row("slider while three simulations are computed", lambda: asyncio.run(slider(server.port)))

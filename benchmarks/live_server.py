@@ -140,6 +140,13 @@ class LivePage:
             if isinstance(message, dict) and message.get("id") == number:
                 return message
 
+    async def of_type(self, kind: str) -> dict[str, Any]:
+        """Wait for the next JSON message of a type."""
+        while True:
+            message = await self.message()
+            if isinstance(message, dict) and message.get("type") == kind:
+                return message
+
     async def until(self, channel: str, wanted: Any) -> float:
         """Wait until a sample's channel satisfies `wanted`; return when that was seen [s]."""
         column = self.names.index(channel)
