@@ -9,11 +9,14 @@ import pytest
 from tests.core.operating_points import OBSERVERS, realistic
 from vssea_core.actuator.sensors import Encoders
 from vssea_core.analysis.assembly import NOISE, TORQUE
+from vssea_core.analysis.certify import scenario_of
 from vssea_core.analysis.frequency_response import frequency_response
 from vssea_core.analysis.loop import loop_model
 from vssea_core.analysis.noise import observer_figures, torque_noise
 from vssea_core.analysis.sensitivities import map_at, response, sensitivities
 from vssea_core.control.tuning import Observer, PositionObserver, StateFeedback, VelocityObserver
+from vssea_core.signals.documents import Disturbances, SineReference
+from vssea_core.simulation.run import simulate
 
 observers = pytest.mark.parametrize("observer", OBSERVERS.values(), ids=OBSERVERS)
 W = np.geomspace(0.5, 3000.0, 400)
@@ -126,3 +129,22 @@ def test_faster_poles_cost_torque_noise() -> None:
         loop = loop_model(type(point)(tuning, point.timing, point.stiffness, point.plant))
         noise.append(torque_noise(loop, COUNTS).rms)
     assert noise == sorted(noise)
+
+
+@pytest.mark.parametrize("predict", [False, True])
+@observers
+def test_the_error_of_a_sine_is_that_of_its_simulation(observer: Observer, predict: bool) -> None:
+    """A small sine of 1.5 Hz, one sample of delay, compensated or not: the amplitude of the steady error."""
+    point = realistic(observer.model_copy(update={"predict": predict}))
+    scenario = scenario_of(point, 8.0).model_copy(
+        update={
+            "reference": SineReference(amplitude=1e-4, frequency_hz=1.5, fade_in_s=1.0),
+            "disturbances": Disturbances(),
+        }
+    )
+    late = simulate(scenario)["error"][4000:]
+    w = 2.0 * math.pi * 1.5
+    times = np.arange(len(late)) * 1e-3
+    amplitude = np.hypot(*np.linalg.lstsq(np.column_stack([np.sin(w * times), np.cos(w * times)]), late, rcond=None)[0])
+    expected = abs(map_at(loop_model(point), "reference_to_error", np.array([w]))[0])
+    assert amplitude / 1e-4 == pytest.approx(expected, rel=2e-3)

@@ -69,6 +69,7 @@ class LoopModel:
     period_s: float
     compute_delay: bool
     note: str | None = None
+    looks_ahead: bool = False  # the reference inputs are those of a sample later, as a compensated delay asks for them
 
     inputs = INPUT_NAMES
     outputs = OUTPUT_NAMES
@@ -136,7 +137,8 @@ class Pieces:
         for row, inertia in ((LINK_DISTURBANCE, model.link_inertia), (MOTOR_DISTURBANCE, model.motor_inertia)):
             C[row] *= inertia
             D[row] *= inertia
-        return LoopModel(A, B, C, D, self._states(plant), self.period_s, self.compute_delay, self.note)
+        ahead = self.compute_delay and self.point.tuning.observer.predict
+        return LoopModel(A, B, C, D, self._states(plant), self.period_s, self.compute_delay, self.note, ahead)
 
     def _states(self, plant: LinearPlant) -> tuple[str, ...]:
         kept = kept_entries(self.observer, OUTPUTS_OF_PLANT)

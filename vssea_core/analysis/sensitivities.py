@@ -54,7 +54,8 @@ def _of_load(output: int, load: int, sign: float = 1.0) -> Callable[[Complex, Nu
 
 
 def _tracking(G: Complex, w: Numbers, loop: LoopModel) -> Complex:
-    derivatives = (1j * w[:, None]) ** np.arange(NOISE - REFERENCE)
+    ahead = np.exp(1j * w * loop.period_s * loop.looks_ahead)
+    derivatives = (1j * w[:, None]) ** np.arange(NOISE - REFERENCE) * ahead[:, None]
     return np.asarray(1.0 - np.sum(G[:, LINK, REFERENCE:NOISE] * derivatives, axis=1))
 
 
