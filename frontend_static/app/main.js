@@ -16,6 +16,7 @@ import { PlotsOverlay } from "./plots/plots_overlay.js";
 import { Scene } from "./scene.js";
 import { LiveSession } from "./session/live_session.js";
 import { rest } from "./session/rest.js";
+import { StabilityColumn } from "./stability/stability_column.js";
 import { Theme } from "./theme.js";
 import { KeysDialog } from "./topbar/keys_dialog.js";
 import { LoopHealth } from "./topbar/loop_health.js";
@@ -48,6 +49,7 @@ new PlotsOverlay(document.getElementById("plots-overlay"), session);
 new LastEvent(session);
 new Metrics(session);
 new EventLog(session);
+new StabilityColumn(document.getElementById("stability"), session);
 
 bindKeys({
   stop: () => stop.press(),
