@@ -1,5 +1,6 @@
 /** Puts the page together: one session, and the panels that show it and ask it for changes. */
 
+import { AnalyseView } from "./analyse/analyse_view.js";
 import { bindKeys } from "./keys.js";
 import { ConnectionBanner } from "./connection_banner.js";
 import { Baseline } from "./document/baseline.js";
@@ -50,6 +51,7 @@ new LastEvent(session);
 new Metrics(session);
 new EventLog(session);
 new StabilityColumn(document.getElementById("stability"), session);
+new AnalyseView(document.getElementById("view-analyse"), { session, theme, views });
 
 bindKeys({
   stop: () => stop.press(),
@@ -61,6 +63,7 @@ bindKeys({
   redo: () => edits.redo(),
   savePreset: () => parameters?.presets.save(),
   viewTune: () => views.show("tune"),
+  viewAnalyse: () => views.show("analyse"),
   showKeys: () => keysDialog.show(),
 });
 

@@ -27,7 +27,7 @@ export function significant(value) {
 export function compact(value) {
   const size = Math.abs(value ?? NaN);
   if (size < 1 && size >= 5e-4) return fixed(value, 3);
-  return significant(size >= 1000 && size < 1e5 ? Number(value.toPrecision(3)) : value);
+  return significant(size > 0 ? Number(value.toPrecision(3)) : value);
 }
 
 /** @returns {string} the shortest text that a number box can show and read back */
