@@ -1,5 +1,5 @@
 import { element, setText } from "../element.js";
-import { compact } from "../quantity.js";
+import { compact, inputText } from "../quantity.js";
 import { svg } from "../svg.js";
 import { logTicks, tickText } from "./log_ticks.js";
 
@@ -40,7 +40,7 @@ export class BandwidthSection {
     this.drawing.setAttribute("viewBox", `0 0 ${WIDTH} ${height}`);
     this.drawing.setAttribute(
       "aria-label",
-      sets.map(({ stiffness, intervals }) => `${compact(stiffness)} N·m/rad: ${words(intervals)}`).join("; "),
+      sets.map(({ stiffness, intervals }) => `${inputText(stiffness)} N·m/rad: ${this.#words(intervals)}`).join("; "),
     );
     this.now = svg("g");
     this.drawing.replaceChildren(
@@ -66,16 +66,24 @@ export class BandwidthSection {
       );
     });
     const ends = intervals.length
-      ? svg("text", { class: "bandwidth-ends", x: this.x(intervals[0][0]) + 4, y: y - 11 }, words(intervals))
-      : svg("text", { class: "bandwidth-ends", x: LEFT + 4, y: y + 4 }, "none is stable with these margins");
+      ? svg("text", { class: "bandwidth-ends", x: this.x(intervals[0][0]) + 4, y: y - 11 }, this.#words(intervals))
+      : svg("text", { class: "bandwidth-ends", x: LEFT + 4, y: y - 6 }, "none is stable with these margins");
     return svg(
       "g",
       {},
-      svg("text", { x: LEFT - 10, y: y + 4, "text-anchor": "end" }, `${compact(stiffness)} N·m/rad`),
+      svg("text", { x: LEFT - 10, y: y + 4, "text-anchor": "end" }, `${inputText(stiffness)} N·m/rad`),
       svg("line", { class: "bandwidth-track", x1: LEFT, x2: WIDTH - RIGHT, y1: y, y2: y }),
       ...bars,
       ends,
     );
+  }
+
+  /** An interval that ends where the range does may go on. */
+  #words(intervals) {
+    const { low, high } = this.result;
+    const from = (value) => (value <= 1.001 * low ? `≤ ${inputText(low)}` : compact(value));
+    const to = (value) => (value >= 0.999 * high ? `≥ ${inputText(high)}` : compact(value));
+    return intervals.length ? `${intervals.map(([a, b]) => `${from(a)} to ${to(b)}`).join(", ")} rad/s` : "none";
   }
 
   /** The bandwidth in force, as a line through all stiffnesses. */
@@ -91,8 +99,3 @@ export class BandwidthSection {
   }
 }
 
-function words(intervals) {
-  return intervals.length
-    ? intervals.map(([from, to]) => `${compact(from)} to ${compact(to)}`).join(", ") + " rad/s"
-    : "none";
-}

@@ -126,7 +126,7 @@ export class FrequencyChart {
           size: BOTTOM_PX,
           splits: (_, __, min, max) => logTicks(min, max),
           filter: (_, ticks) => ticks,
-          values: (_, ticks) => ticks.map(tickText),
+          values: (_, ticks) => ticks.map((tick, i) => `${tickText(tick)}${i === ticks.length - 1 ? " rad/s" : ""}`),
         },
         {
           ...axis,
@@ -144,7 +144,7 @@ export class FrequencyChart {
           scale: "y",
           width: thick ?? 1.5,
           pxAlign: 0,
-          stroke: () => (colour.startsWith("rgb") ? colour : palette.colour(colour)),
+          stroke: () => palette.colour(colour),
           dash,
           spanGaps: true,
           points: { show: false },

@@ -15,8 +15,8 @@ const CHARTS = {
   gain: { name: "Loop gain |L|", unit: "", clip: [1e-2, 1e3], level: 1 },
   phase: { name: "Phase of L", unit: "", isPhase: true, clip: [-540, 360], level: -180 },
   sensitivity: { name: "Sensitivities", unit: "", clip: [1e-3, 10], level: 1 },
-  disturbance: { name: "Disturbance to error", unit: "mrad/(N·m)", factor: 1e3, clip: [1e-4, 1e3] },
-  noise: { name: "Encoder noise to torque", unit: "N·m/mrad", factor: 1e-3, clip: [1e-4, 1e4] },
+  disturbance: { name: "Load to error", unit: "mrad/(N·m)", factor: 1e3, clip: [1e-4, 1e3] },
+  noise: { name: "Noise to torque", unit: "N·m/mrad", factor: 1e-3, clip: [1e-4, 1e4] },
 };
 
 /** The analysis of one loop: curves over frequency, Nyquist plot, poles, tables. */

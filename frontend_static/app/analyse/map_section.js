@@ -12,6 +12,10 @@ const TRUE_FACTORS = {
   motor_inertia: ["actuator.motor.inertia", "tuning.model.motor_inertia"],
 };
 
+function capital(words) {
+  return `${words[0].toUpperCase()}${words.slice(1)}`;
+}
+
 /** The newest map, with its values under the pointer or, by the arrow keys, under a cell cursor. */
 export class MapSection {
   #cell = null;
@@ -72,7 +76,7 @@ export class MapSection {
     const where = `on ${result.plant === "model" ? "its model" : "the actuator"}${[x, y].some(({ axis }) => axis.name === "stiffness") ? "" : ` at ${compact(result.stiffness)} N·m/rad`}`;
     const note = result.note ? ` Note: ${result.note}.` : "";
     const actual = this.picture.marks.length > 1 ? ", ◇ the simulated actuator" : "";
-    setText(this.caption, `${this.layer.legend}, ${where}; stable in ${share} % of the map. ⊕ the present tuning${actual}.${note}`);
+    setText(this.caption, `${capital(this.layer.legend)}, ${where}; stable in ${share} % of the map. ⊕ the present tuning${actual}.${note}`);
     this.canvas.canvas.setAttribute("aria-label", `Map of ${y.axis.label} over ${x.axis.label}: ${this.caption.textContent} Arrow keys read values.`);
     this.canvas.show(this.picture);
     setText(this.readout, "");

@@ -40,7 +40,7 @@ export class NyquistPlot {
       svg("line", { class: "nyquist-axis", x1: -50, x2: 50, y1: 0, y2: 0 }),
       svg("line", { class: "nyquist-axis", x1: 0, x2: 0, y1: -50, y2: 50 }),
       svg("circle", { class: "nyquist-unit", cx: 0, cy: 0, r: 1 }),
-      margins ? freeCircle(margins.disk_gain) : null ?? svg("g"),
+      ...(margins ? [freeCircle(margins.disk_gain)] : []),
       ...curves.map(({ curve, colour, dash }) => trace(curve, colour, dash)),
       ...(margins ? phaseRay(margins, curves[0].curve) : []),
       svg("path", { class: "nyquist-point", d: "M-1.05,-0.05L-0.95,0.05M-1.05,0.05L-0.95,-0.05" }),
@@ -102,7 +102,7 @@ function trace({ real, imaginary }, colour, dash) {
     isDrawing = isNear;
   }
   const path = svg("path", { class: "nyquist-curve", d: d || null, "stroke-dasharray": dash ? "5 4" : null });
-  path.style.stroke = colour.startsWith("rgb") ? colour : `var(--${colour})`;
+  path.style.stroke = `var(--${colour})`;
   return path;
 }
 

@@ -1,9 +1,7 @@
-import { sequentialColour } from "./colour_scale.js";
+/** The stiffnesses [N m/rad] that may be laid over the analysed loop; analyse.css has a colour for each. */
+export const OVERLAYS = [20, 50, 200, 800];
 
-const [SOFT, STIFF] = [15, 1200];
-
-/** @returns {string} colour of a stiffness [N m/rad] among others: lighter is stiffer; readable on both backgrounds */
+/** @returns {string} name of the CSS variable of a stiffness's colour */
 export function overlayColour(stiffness) {
-  const share = Math.log(stiffness / SOFT) / Math.log(STIFF / SOFT);
-  return sequentialColour(0.25 + 0.5 * Math.min(1, Math.max(0, share)));
+  return `overlay-${stiffness}`;
 }

@@ -1,9 +1,8 @@
 import { element, setText } from "../element.js";
 import { Segmented } from "../parameters/segmented.js";
 import { compact, inputText, readNumber } from "../quantity.js";
-import { overlayColour } from "./overlay_colours.js";
+import { OVERLAYS, overlayColour } from "./overlay_colours.js";
 
-const OVERLAYS = [20, 50, 200, 800];
 const MOST = 1e5;
 
 /** What is analysed, and when: plant, stiffness, further stiffnesses, following the tuning or not. */
@@ -60,7 +59,7 @@ export class SubjectPanel {
 
   #chip(stiffness) {
     const swatch = element("span", { class: "chip-swatch" });
-    swatch.style.background = overlayColour(stiffness);
+    swatch.style.background = `var(--${overlayColour(stiffness)})`;
     return element(
       "button",
       {
@@ -89,7 +88,7 @@ export class SubjectPanel {
     const { subject, analysis } = this;
     this.plant.show(subject.plant);
     const commanded = subject.document.commandedStiffness;
-    this.stiffness.placeholder = commanded === undefined ? "as commanded" : `${compact(commanded)}, as commanded`;
+    this.stiffness.placeholder = commanded === undefined ? "as commanded" : `${compact(commanded)}, commanded`;
     if (document.activeElement !== this.stiffness && this.problem.hidden)
       this.stiffness.value = subject.chosenStiffness === null ? "" : inputText(subject.chosenStiffness);
     for (const chip of this.chips)

@@ -53,11 +53,24 @@ export class WorstCaseSection {
   }
 }
 
-function certified({ agreed, reason, predicted_growth, seen_growth, duration_s, peak_error, ending }) {
+/** A decay too fast or too slow to be seen is no disagreement. */
+function verdictOf({ agreed, seen_stable, reason }) {
+  if (agreed) return { tone: "good", words: `Agreed: ${reason}.` };
+  if (seen_stable === null) return { tone: "none", words: `The simulation gives no verdict: ${reason}.` };
+  return { tone: "warning", words: `Not agreed: ${reason}.` };
+}
+
+function angle(radians) {
+  const [factor, unit] = radians < 1e-6 ? [1e9, "nrad"] : radians < 1e-3 ? [1e6, "µrad"] : [1e3, "mrad"];
+  return `${compact(radians * factor)} ${unit}`;
+}
+
+function certified({ agreed, seen_stable, reason, predicted_growth, seen_growth, duration_s, peak_error, ending }) {
+  const { tone, words } = verdictOf({ agreed, seen_stable, reason });
   const rate = (value) => (value === null ? "none to see" : `${compact(value)} 1/s`);
   return [
     element("h3", {}, "Simulated there, with the nonlinear spring"),
-    element("p", { class: "worst-verdict", "data-tone": agreed ? "good" : "warning" }, `${agreed ? "Agreed" : "Not agreed"}: ${reason}.`),
+    element("p", { class: "worst-verdict", "data-tone": tone }, words),
     element(
       "table",
       {},
@@ -68,8 +81,8 @@ function certified({ agreed, reason, predicted_growth, seen_growth, duration_s, 
           ["predicted growth", rate(predicted_growth)],
           ["seen growth", rate(seen_growth)],
           ["simulated", `${compact(duration_s)} s${ending ? `, ended: ${ending}` : ""}`],
-          ["largest link error", `${peak_error < 1e-3 ? `${compact(peak_error * 1e6)} µrad` : `${compact(peak_error * 1e3)} mrad`}`],
-        ].map(([name, words]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, words))),
+          ["largest link error", angle(peak_error)],
+        ].map(([name, figure]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, figure))),
       ),
     ),
   ];
