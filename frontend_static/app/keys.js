@@ -18,6 +18,7 @@ export const KEYS = [
   { key: "z", shown: "Ctrl+Shift+Z", does: "redo", text: "Redo", ctrl: true, shift: true },
   { key: "s", shown: "Ctrl+S", does: "savePreset", text: "Save the preset", ctrl: true, whileTyping: false },
   { key: "1", shown: "1", does: "viewTune", text: "View: Tune" },
+  { key: "2", shown: "2", does: "viewAnalyse", text: "View: Analyse" },
   { key: "?", shown: "?", does: "showKeys", text: "These keys" },
 ];
 

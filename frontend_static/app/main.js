@@ -1,5 +1,6 @@
 /** Puts the page together: one session, and the panels that show it and ask it for changes. */
 
+import { AnalyseView } from "./analyse/analyse_view.js";
 import { bindKeys } from "./keys.js";
 import { ConnectionBanner } from "./connection_banner.js";
 import { Baseline } from "./document/baseline.js";
@@ -16,6 +17,7 @@ import { PlotsOverlay } from "./plots/plots_overlay.js";
 import { Scene } from "./scene.js";
 import { LiveSession } from "./session/live_session.js";
 import { rest } from "./session/rest.js";
+import { StabilityColumn } from "./stability/stability_column.js";
 import { Theme } from "./theme.js";
 import { KeysDialog } from "./topbar/keys_dialog.js";
 import { LoopHealth } from "./topbar/loop_health.js";
@@ -48,6 +50,8 @@ new PlotsOverlay(document.getElementById("plots-overlay"), session);
 new LastEvent(session);
 new Metrics(session);
 new EventLog(session);
+new StabilityColumn(document.getElementById("stability"), session);
+new AnalyseView(document.getElementById("view-analyse"), { session, theme, views });
 
 bindKeys({
   stop: () => stop.press(),
@@ -59,6 +63,7 @@ bindKeys({
   redo: () => edits.redo(),
   savePreset: () => parameters?.presets.save(),
   viewTune: () => views.show("tune"),
+  viewAnalyse: () => views.show("analyse"),
   showKeys: () => keysDialog.show(),
 });
 

@@ -23,6 +23,13 @@ export function significant(value) {
   return fixed(value, decimalsFor(size));
 }
 
+/** @returns {string} at most three significant digits, none of them beyond the third decimal of numbers below 1 */
+export function compact(value) {
+  const size = Math.abs(value ?? NaN);
+  if (size < 1 && size >= 5e-4) return fixed(value, 3);
+  return significant(size > 0 ? Number(value.toPrecision(3)) : value);
+}
+
 /** @returns {string} the shortest text that a number box can show and read back */
 export function inputText(value) {
   if (typeof value !== "number") return "";

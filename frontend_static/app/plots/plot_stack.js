@@ -80,7 +80,9 @@ export class PlotStack {
     return this.#charts.map((chart) => [clientWidth, each + (chart.hasTimeAxis ? TIME_AXIS_PX : 0)]);
   }
 
+  /** Hidden with its view, the stack has no size and keeps the one it had. */
   #resize() {
+    if (!this.area.clientWidth) return;
     for (const [i, [width, height]] of this.#sizes().entries()) this.#charts[i].resize(width, height);
     this.redraw();
   }

@@ -8,8 +8,8 @@ const EVENTS_KEPT = 300;
 /**
  * The page's one picture of the session: snapshot, document, events and telemetry, all as the server said them.
  *
- * Events: `snapshot`, `hello`, `log` (the list of events changed), `connection` (open or lost), `presets`, and those of
- * `document` and `store`.
+ * Events: `snapshot`, `hello`, `log` (the list of events changed), `connection` (open or lost), `presets`, `margins` (of the
+ * tuning, newly computed), and those of `document` and `store`.
  */
 export class LiveSession extends EventTarget {
   #run = null; // which run of the server the samples and events came from
@@ -21,6 +21,7 @@ export class LiveSession extends EventTarget {
     this.document = new ScenarioDocument();
     this.connection = new LiveConnection(historySeconds);
     this.snapshot = null;
+    this.margins = null;
     this.events = [];
     this.channels = new Map();
     this.you = "";
@@ -71,6 +72,7 @@ export class LiveSession extends EventTarget {
     if (message.type === "hello") this.#greet(message);
     else if (message.type === "state") this.#show(message.snapshot);
     else if (message.type === "document") this.document.accept(message);
+    else if (message.type === "margins") this.#takeMargins(message);
     else if (message.type === "event") this.#log([message.event]);
     else if (message.type === "missed") this.note(`${message.samples} samples missed: this page was too slow`);
   }
@@ -85,6 +87,7 @@ export class LiveSession extends EventTarget {
     this.events = otherRun ? [] : this.events;
     this.dispatchEvent(new Event("hello"));
     if (hello.document) this.document.accept(hello.document);
+    this.#takeMargins(hello.margins ?? null);
     this.#log(hello.events);
     this.#show(hello.snapshot);
   }
@@ -92,6 +95,11 @@ export class LiveSession extends EventTarget {
   #show(snapshot) {
     this.snapshot = snapshot;
     this.dispatchEvent(new Event("snapshot"));
+  }
+
+  #takeMargins(margins) {
+    this.margins = margins;
+    this.dispatchEvent(new Event("margins"));
   }
 
   #log(events) {

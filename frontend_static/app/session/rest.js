@@ -2,19 +2,19 @@ import { Refusal } from "./refusal.js";
 
 const TIME_LIMIT_MS = 8000;
 
-/** One REST call. @returns {Promise<any>} the answer's JSON @throws {Refusal} with the server's problem, or why there is none */
-export async function rest(method, path, body) {
+/** One REST call, answered within `timeLimitMs`. @returns {Promise<any>} the answer's JSON @throws {Refusal} with the server's problem, or why there is none */
+export async function rest(method, path, body, timeLimitMs = TIME_LIMIT_MS) {
   let response;
   try {
     response = await fetch(path, {
       method,
       headers: body === undefined ? {} : { "content-type": "application/json" },
       body: body === undefined ? undefined : JSON.stringify(body),
-      signal: AbortSignal.timeout(TIME_LIMIT_MS),
+      signal: AbortSignal.timeout(timeLimitMs),
     });
   } catch (error) {
     const why =
-      error.name === "TimeoutError" ? `no answer within ${TIME_LIMIT_MS / 1000} s` : "the server cannot be reached";
+      error.name === "TimeoutError" ? `no answer within ${timeLimitMs / 1000} s` : "the server cannot be reached";
     throw new Refusal({ title: "No answer", detail: `${method} ${path}: ${why}.` });
   }
   const answer = await response.json().catch(() => null);
