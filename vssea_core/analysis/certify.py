@@ -95,8 +95,11 @@ def scenario_of(point: OperatingPoint, duration_s: float, limits: bool = False) 
     if not limits:
         changes |= {"peak_torque": 1e4, "continuous_torque": 1e4, "no_load_speed": 1000.0, "stall_torque": 1e5}
     motor = EquilibriumMotor.model_validate(changes)
-    mechanism = StiffnessMechanism(
-        spring_constant=plant.spring_constant, softest=point.stiffness / 4.0, stiffest=point.stiffness * 4.0
+    true = point.stiffness * plant.spring_constant / point.tuning.model.spring_constant
+    mechanism = StiffnessMechanism(  # end stops far from both the commanded and the true stiffness
+        spring_constant=plant.spring_constant,
+        softest=max(1.0, min(point.stiffness, true) / 4.0),
+        stiffest=min(1e5, max(point.stiffness, true) * 4.0),
     )
     link = Link(inertia=plant.link_inertia, damping=plant.link_damping)
     return Scenario(
