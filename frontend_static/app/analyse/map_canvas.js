@@ -14,7 +14,7 @@ export class MapCanvas {
   /** @param {(cell: {i: number, j: number}|null, event: PointerEvent|null) => void} pointed */
   constructor(palette, pointed) {
     this.palette = palette;
-    this.canvas = element("canvas", { class: "map-canvas", tabindex: "0", role: "img" });
+    this.canvas = element("canvas", { class: "map-canvas", tabindex: "0", role: "img", "aria-label": "No map yet" });
     this.canvas.addEventListener("pointermove", (event) => pointed(this.#cellAt(event), event));
     this.canvas.addEventListener("pointerleave", () => pointed(null, null));
     this.root = element("div", { class: "map-area" }, this.canvas);
