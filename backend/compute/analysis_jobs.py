@@ -2,11 +2,10 @@
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from backend.compute.requests import BandwidthRequest, LoopRequest, MapRequest, WorstCaseRequest
-from backend.compute.worker import Progress
 from vssea_core.actuator.sensors import encoders
 from vssea_core.analysis.axes import changed
 from vssea_core.analysis.bandwidth_sets import LeastMargins, bandwidth_sets
@@ -124,7 +123,7 @@ def jerk_of_sines(terms: Sequence[LinkDisturbance]) -> float:
     return jerk
 
 
-def analysis_task(asked: MapRequest | BandwidthRequest | WorstCaseRequest, progress: Progress) -> bytes:
+def analysis_task(asked: MapRequest | BandwidthRequest | WorstCaseRequest, progress: Callable[..., bool]) -> bytes:
     """Return the result of a long analysis as JSON. Raises ValueError if what is asked makes no sense."""
     point = operating_point(asked.scenario or Scenario(), asked.stiffness, asked.plant)
     about = {"kind": asked.kind, "stiffness": point.stiffness, "plant": asked.plant}

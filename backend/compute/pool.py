@@ -11,7 +11,7 @@ from typing import Any
 from backend.processes import CONTEXT, started
 
 logger = logging.getLogger(__name__)
-START_LIMIT_S = 120.0
+START_LIMIT_S = 300.0  # a slow machine compiles for long at its first start
 ENTRY = "backend.compute.worker:run_worker"
 
 
@@ -137,7 +137,7 @@ class Pool:
         self.design = Worker("vssea design", "plan_run", niceness=0)
         self.analysis = Worker("vssea analysis", "margins_of", niceness=8)
         self.simulation = Worker("vssea simulation", "simulate_scenario", niceness=10)
-        self.tasks = Worker("vssea tasks", "simulate_scenario", niceness=15)
+        self.tasks = Worker("vssea tasks", "analysis_task", niceness=15)
 
     async def stop(self) -> None:
         """End all of them."""

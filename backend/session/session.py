@@ -129,7 +129,7 @@ class Session:
 
     async def _warm_workers(self) -> None:
         """Start the workers beside the control process; a worker that fails to start is tried again when it is needed."""
-        for worker in (self._pool.design, self._pool.analysis, self._pool.simulation):
+        for worker in (self._pool.design, self._pool.analysis, self._pool.simulation, self._pool.tasks):
             try:
                 await worker.start()
             except JobFailedError as failure:
