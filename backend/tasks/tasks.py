@@ -104,7 +104,7 @@ class Tasks:
             await self._run(waiting[0])
 
     async def _run(self, task: Task) -> None:
-        task.state, task.words = "running", "starting"
+        task.state, task.words = "running", "starting (the first of its kind compiles its kernels)"
         begun = asyncio.get_running_loop().time()
 
         def hear(share: float, words: str) -> None:

@@ -52,6 +52,7 @@ export class LoopSection {
         element("h3", {}, "Poles"),
         this.polePlot.root,
         this.tables.poles,
+        this.tables.bounds,
       ),
     );
     analysis.addEventListener("change", () => this.#show());

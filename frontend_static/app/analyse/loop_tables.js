@@ -16,17 +16,20 @@ const RANGES = [
   ["spring_constant", "stiffness"],
 ];
 
-/** Tables of margins at both breaks, of how far the true plant may be, and of poles. */
+/** Tables of margins at both breaks, of how far the true plant may be, of poles, and of what bounds the error. */
 export class LoopTables {
   constructor() {
     this.margins = element("table");
     this.ranges = element("table");
     this.poles = element("table", { class: "poles-table" });
+    this.bounds = element("table");
   }
 
   show(report) {
     for (const table of [this.margins, this.ranges, this.poles]) table.hidden = !report;
+    this.bounds.hidden = !report?.error_bound;
     if (!report) return;
+    if (report.error_bound) this.#showBounds(report.error_bound);
     const { robustness, poles, sample_time_s } = report;
     const { plant, limiter } = robustness.margins;
     fill(
@@ -57,6 +60,16 @@ export class LoopTables {
       `T = ${compact(sample_time_s * 1e3)} ms`,
     ].filter(Boolean);
     this.poles.append(element("caption", {}, `${words.join("; ")}.`));
+  }
+
+  /** Eqs. (11)-(13) corrected, and the exact peak gain beside them. */
+  #showBounds({ link_jerk, motor_jerk, peak_error, lyapunov_bound }) {
+    fill(this.bounds, ["error under these loads", "mrad"], [
+      ["exact: |e| at most", [compact(peak_error * 1e3)]],
+      ["by Lyapunov: at most", [compact(lyapunov_bound * 1e3)]],
+    ]);
+    const loads = `|d³τ/dt³| up to ${compact(link_jerk)} N·m/s³ on the link, ${compact(motor_jerk)} on the motor`;
+    this.bounds.append(element("caption", {}, `${loads}: those of the scenario’s sines, the model being the plant.`));
   }
 }
 
