@@ -13,7 +13,6 @@ export class ScenarioDocument extends EventTarget {
     super();
     this.scenario = null;
     this.preset = null;
-    this.tuningId = null;
     this.by = "";
   }
 
@@ -21,16 +20,9 @@ export class ScenarioDocument extends EventTarget {
     return valueAt(this.scenario, path);
   }
 
-  /** @returns {number|undefined} the stiffness [N m/rad] that is commanded in the end */
-  get commandedStiffness() {
-    const reference = this.value("stiffness_reference");
-    return reference?.kind === "move" ? reference.target : reference?.stiffness;
-  }
-
-  /** @param {{scenario: object, preset: object|null, tuning_id: number, by: string}} message the server's `document` */
-  accept({ scenario, preset, tuning_id, by }) {
+  /** @param {{scenario: object, preset: object|null, by: string}} message the server's `document` */
+  accept({ scenario, preset, by }) {
     this.scenario = scenario;
-    this.tuningId = tuning_id ?? null;
     this.preset = preset ?? null;
     this.by = by ?? "";
     this.#changed(false);
