@@ -15,7 +15,7 @@ export class BandwidthSection {
   constructor(scenarioDocument) {
     this.document = scenarioDocument;
     this.caption = element("p", { class: "result-caption" });
-    this.drawing = svg("svg", { class: "bandwidths", role: "img" });
+    this.drawing = svg("svg", { class: "bandwidths", role: "img", "aria-label": "No bandwidths yet" });
     this.empty = element("p", { class: "result-overlay" }, "No bandwidths yet. Compute them on the left.");
     this.root = element(
       "div",

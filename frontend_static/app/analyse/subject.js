@@ -1,3 +1,5 @@
+import { commandedStiffness } from "../document/commanded_stiffness.js";
+
 /**
  * What is analysed: the live scenario on the controller's own model or on the simulated actuator, at the commanded stiffness
  * or at another one, and at which further stiffnesses.
@@ -15,7 +17,7 @@ export class Subject extends EventTarget {
 
   /** @returns {number|undefined} N m/rad */
   get stiffness() {
-    return this.chosenStiffness ?? this.document.commandedStiffness;
+    return this.chosenStiffness ?? commandedStiffness(this.document);
   }
 
   /** @returns {object} body of a request, without what else is asked */

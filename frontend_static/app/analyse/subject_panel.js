@@ -1,3 +1,4 @@
+import { commandedStiffness } from "../document/commanded_stiffness.js";
 import { element, setText } from "../element.js";
 import { Segmented } from "../parameters/segmented.js";
 import { compact, inputText, readNumber } from "../quantity.js";
@@ -87,7 +88,7 @@ export class SubjectPanel {
   #show() {
     const { subject, analysis } = this;
     this.plant.show(subject.plant);
-    const commanded = subject.document.commandedStiffness;
+    const commanded = commandedStiffness(subject.document);
     this.stiffness.placeholder = commanded === undefined ? "as commanded" : `${compact(commanded)}, commanded`;
     if (document.activeElement !== this.stiffness && this.problem.hidden)
       this.stiffness.value = subject.chosenStiffness === null ? "" : inputText(subject.chosenStiffness);

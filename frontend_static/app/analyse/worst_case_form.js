@@ -23,7 +23,7 @@ export class WorstCaseForm {
       "Worst by",
       [
         { value: "disk", text: "disk margin", title: "The plant with the smallest disk margin; an unstable one is worse" },
-        { value: "growth", text: "slowest decay", title: "The plant whose slowest mode decays least, or grows most" },
+        { value: "growth", text: "decay", title: "The plant whose slowest mode decays least, or grows most" },
       ],
       (criterion) => this.#choose(criterion),
     );

@@ -25,7 +25,6 @@ export class ScenarioDocument extends EventTarget {
     this.scenario = null;
     this.beginning = null;
     this.preset = null;
-    this.tuningId = null;
     this.by = "";
   }
 
@@ -33,17 +32,10 @@ export class ScenarioDocument extends EventTarget {
     return valueAt(this.scenario, path);
   }
 
-  /** @returns {number|undefined} the stiffness [N m/rad] that is commanded in the end */
-  get commandedStiffness() {
-    const reference = this.value("stiffness_reference");
-    return reference?.kind === "move" ? reference.target : reference?.stiffness;
-  }
-
-  /** @param {{scenario: object, beginning: object|null, preset: object|null, tuning_id: number, by: string}} message the server's `document` */
-  accept({ scenario, beginning, preset, tuning_id, by }) {
+  /** @param {{scenario: object, beginning: object|null, preset: object|null, by: string}} message the server's `document` */
+  accept({ scenario, beginning, preset, by }) {
     this.scenario = scenario;
     this.beginning = beginning ?? scenario; // as it stands at t = 0, before its sequence changes it
-    this.tuningId = tuning_id ?? null;
     this.preset = preset ?? null;
     this.by = by ?? "";
     this.#changed(false);

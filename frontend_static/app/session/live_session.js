@@ -22,6 +22,7 @@ export class LiveSession extends EventTarget {
     this.connection = new LiveConnection(historySeconds);
     this.snapshot = null;
     this.margins = null;
+    this.tuningId = null; // of the document
     this.events = [];
     this.channels = new Map();
     this.you = "";
@@ -71,7 +72,7 @@ export class LiveSession extends EventTarget {
   #take(message) {
     if (message.type === "hello") this.#greet(message);
     else if (message.type === "state") this.#show(message.snapshot);
-    else if (message.type === "document") this.document.accept(message);
+    else if (message.type === "document") this.#takeDocument(message);
     else if (message.type === "margins") this.#takeMargins(message);
     else if (message.type === "event") this.#log([message.event]);
     else if (message.type === "missed") this.note(`${message.samples} samples missed: this page was too slow`);
@@ -86,7 +87,7 @@ export class LiveSession extends EventTarget {
     this.store.readChannels(hello.channels);
     this.events = otherRun ? [] : this.events;
     this.dispatchEvent(new Event("hello"));
-    if (hello.document) this.document.accept(hello.document);
+    if (hello.document) this.#takeDocument(hello.document);
     this.#takeMargins(hello.margins ?? null);
     this.#log(hello.events);
     this.#show(hello.snapshot);
@@ -95,6 +96,11 @@ export class LiveSession extends EventTarget {
   #show(snapshot) {
     this.snapshot = snapshot;
     this.dispatchEvent(new Event("snapshot"));
+  }
+
+  #takeDocument(message) {
+    this.tuningId = message.tuning_id ?? null;
+    this.document.accept(message);
   }
 
   #takeMargins(margins) {

@@ -1,3 +1,4 @@
+import { commandedStiffness } from "../document/commanded_stiffness.js";
 import { element } from "../element.js";
 import { MarginPanel } from "./margin_panel.js";
 import { MeaningPanel } from "./meaning_panel.js";
@@ -34,10 +35,9 @@ export class StabilityColumn {
   }
 
   #age() {
-    const { margins, document } = this.session;
+    const { margins, tuningId, document } = this.session;
     const isOld =
-      margins?.available &&
-      (document.tuningId > margins.tuning_id || document.commandedStiffness !== margins.stiffness);
+      margins?.available && (tuningId > margins.tuning_id || commandedStiffness(document) !== margins.stiffness);
     this.body.classList.toggle("is-old", Boolean(isOld));
   }
 }
