@@ -94,7 +94,7 @@ export class SubjectPanel {
       this.stiffness.value = subject.chosenStiffness === null ? "" : inputText(subject.chosenStiffness);
     for (const chip of this.chips)
       chip.setAttribute("aria-pressed", String(subject.overlays.has(Number(chip.dataset.stiffness))));
-    setText(this.state, analysis.isBusy ? "computing…" : analysis.isOld ? "changed since" : "up to date");
+    setText(this.state, analysis.isBusy ? "computing…" : analysis.isOld ? "changed" : "current");
     this.compute.disabled = analysis.isBusy || !analysis.isOld;
   }
 }
