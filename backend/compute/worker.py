@@ -56,7 +56,7 @@ def run_worker(pipe: Connection, niceness: int, first_job: str) -> None:
             continue  # the end of a job that had ended by itself
         name, arguments = asked
         heard = (Progress(pipe),) if name in jobs.LONG else ()
-        pipe.send(_outcome(getattr(jobs, name), (*arguments, *heard)))
+        pipe.send(_outcome(getattr(jobs, name, None), (*arguments, *heard)))
 
 
 def _outcome(job: object, arguments: tuple[object, ...]) -> Outcome:
