@@ -290,8 +290,9 @@ class Session:
             found = differences(old.model_dump(mode="json")[part], new.model_dump(mode="json")[part])
             if found:
                 done = await apply(new)
-                self.scenario = new
-                self.margins.ask(new, self.status.tuning_id)
+                # Only this part: the sequence may have changed another one meanwhile.
+                self.scenario = self.scenario.model_copy(update={part: getattr(new, part)})
+                self.margins.ask(self.scenario, self.status.tuning_id)
                 await self._keep_sequence(part, asked)
                 self._notes.add(part, by, found, self.status.epoch, done.time_s)
                 self.tell(self.document(by))
