@@ -1,7 +1,5 @@
 """Time of one simulated run of 10 s at 1 kHz, beside scipy and python-control on the same loop in the same process."""
 
-import statistics
-import time
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -11,6 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from scipy.integrate import solve_ivp
 
+from benchmarks.timing import timed
 from tests.core.as_reference import reference_config
 from tests.reference.closed_loop import simulate as reference_simulate
 from tests.reference.plant import derivative
@@ -28,17 +27,6 @@ from vssea_core.simulation.state import equilibrium_state, inputs_of
 
 REPEATS = 60
 SAMPLES = 10_000
-
-
-def timed(work: Callable[[], object], repeats: int) -> tuple[float, float]:
-    """Return best and median time [s] of `work`, after one call that is not counted."""
-    work()
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - start)
-    return min(times), statistics.median(times)
 
 
 def kernel_of(scenario: Scenario) -> Callable[[], object]:

@@ -1,8 +1,6 @@
 """Times of the loop analysis on two cores, and python-control doing the same for one point, in one run."""
 
 import math
-import statistics
-import time
 from collections.abc import Callable
 
 import control
@@ -10,6 +8,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from benchmarks.timing import timed
 from vssea_core.actuator.sensors import encoders
 from vssea_core.analysis.bandwidth_sets import LeastMargins, bandwidth_sets
 from vssea_core.analysis.loop import loop_model
@@ -30,17 +29,6 @@ MAPS = (
 )
 FREQUENCIES = 331
 """As many as the report's own grid has."""
-
-
-def timed(work: Callable[[], object], repeats: int) -> tuple[float, float]:
-    """Return best and median time [s] of `work`, after one call that is not counted."""
-    work()
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - start)
-    return min(times), statistics.median(times)
 
 
 def realistic_point() -> OperatingPoint:
