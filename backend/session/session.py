@@ -12,13 +12,14 @@ from pydantic import BaseModel, ValidationError
 from backend.compute.pool import JobFailedError, Pool
 from backend.presets.store import PresetStore
 from backend.problem import Problem, from_validation
-from backend.session.arguments import Loading, Named, Nothing, Pace, Samples
+from backend.session.arguments import EntryNumber, Loading, Named, Nothing, Pace, Samples, SavePoint
 from backend.session.changes import Changes
 from backend.session.control_link import ControlLink
 from backend.session.control_reports import ControlReports
 from backend.session.disturbance_watch import DisturbanceWatch
 from backend.session.events import Event, EventLog, Kind, Severity
 from backend.session.health import Health
+from backend.session.history_commands import HistoryCommands
 from backend.session.journal import Journal, Silent, Told, Unharming, wall_time
 from backend.session.limit_watch import LimitWatch
 from backend.session.live_margins import LiveMargins
@@ -66,6 +67,7 @@ class Session:
         self._tasks: set[asyncio.Task[None]] = set()
         self._save_timer: asyncio.TimerHandle | None = None
         self.parts, self.runs = PartCommands(self), RunCommands(self)
+        self.history = HistoryCommands(self)
         self.presets = PresetCommands(store, self)
         self._commands: dict[str, tuple[type[BaseModel], Callable[[Any, str], Awaitable[Message]]]] = {
             "tune": (Changes, self.parts.tune),
@@ -79,6 +81,10 @@ class Session:
             "reset": (Nothing, self.runs.reset),
             "set_pace": (Pace, self.runs.set_pace),
             "stop": (Nothing, self.runs.stop),
+            "undo": (Nothing, self.history.undo),
+            "redo": (Nothing, self.history.redo),
+            "save_point": (SavePoint, self.history.save_point),
+            "return_to": (EntryNumber, self.history.return_to),
             "save_preset": (Named, self.presets.save),
             "apply_preset": (Named, self.presets.apply),
             "delete_preset": (Named, self.presets.delete),
@@ -132,6 +138,7 @@ class Session:
         else:
             if last is not None:
                 self.note("scenario", f"{self.scenario.name} and its last tuning are back", "server")
+        self.history.begin()
 
     async def start_control(self) -> None:
         """Start the control process; nothing runs in it yet. Raises Problem if it ends or takes too long."""
