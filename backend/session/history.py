@@ -128,6 +128,7 @@ class History(Generic[State]):
         if newest is None or newest is not self.undoable or self._taken_back:
             return None
         same = (newest.by, newest.part, newest.changes.keys()) == (by, part, changes.keys())
+        same = same and all(only_numbers_differ(*pair) for pair in changes.values())
         return newest if same and self._clock() - newest.heard_at < QUIET_S else None
 
     def _mark(self, entry: Entry[State], undone: bool) -> Entry[State]:
@@ -150,3 +151,16 @@ class History(Generic[State]):
         for stack in (self._done, self._taken_back):
             if entry in stack:
                 stack.remove(entry)
+
+
+def only_numbers_differ(before: Any, after: Any) -> bool:
+    """Return whether two values are alike but for numbers, as those of a moving slider are; None stands for no number."""
+    if isinstance(before, dict) and isinstance(after, dict):
+        return before.keys() == after.keys() and all(only_numbers_differ(before[name], after[name]) for name in after)
+    if isinstance(before, list) and isinstance(after, list):
+        return len(before) == len(after) and all(map(only_numbers_differ, before, after))
+    return before == after or (_is_number(before) and _is_number(after))
+
+
+def _is_number(value: Any) -> bool:
+    return value is None or (isinstance(value, (int, float)) and not isinstance(value, bool))

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -29,7 +30,7 @@ class Desk:
     def _hear(self, entries: list[Entry[Document]]) -> None:
         self.heard |= {entry.number: entry.document() for entry in entries}
 
-    def change(self, part: str, path: str, value: int, by: str = "page 1", after_s: float = 1.0) -> bool:
+    def change(self, part: str, path: str, value: Any, by: str = "page 1", after_s: float = 1.0) -> bool:
         """Change one field; return whether that was a change."""
         self.time_s += after_s
         before = self.now
@@ -144,6 +145,22 @@ def test_what_another_page_another_field_or_a_rest_parts_is_not_one_drag() -> No
     desk.history.save_point("here", "page 2", desk.now, STAMP)
     desk.change("reference", "a", 6, "page 2", 0.03)
     assert len(desk.listed()) == 7
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "is_drag"),
+    [
+        (1.0, 2.0, True), (None, 2.0, True), (True, False, False), ("sgn", "tanh", False),
+        ([{"kind": "sine", "amplitude": 1.0}], [{"kind": "sine", "amplitude": 2.0}], True),
+        ([{"kind": "sine", "amplitude": 1.0}], [{"kind": "constant", "torque": 2.0}], False),
+        ([], [{"kind": "sine", "amplitude": 1.0}], False),
+    ],
+)  # fmt: skip
+def test_only_numbers_are_dragged(before: Any, after: Any, is_drag: bool) -> None:
+    desk = Desk({"tuning": {"a": before}, "reference": {}})
+    desk.change("tuning", "a", after)
+    desk.change("tuning", "a", before, after_s=0.03)
+    assert (len(desk.listed()) == 1) is is_drag
 
 
 def test_what_was_redone_is_not_joined_with_the_next_drag() -> None:
