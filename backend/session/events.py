@@ -18,6 +18,8 @@ Kind = Literal[
     "scenario",
     "sequence",
     "link",
+    "pin",
+    "trigger",
 ]
 Severity = Literal["info", "warning", "fault"]
 KEPT = 500
