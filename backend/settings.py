@@ -27,6 +27,16 @@ class Settings(BaseSettings):
     scenario: str = Field("nominal", description="Scenario of the live session at the first start.")
     scene: bool = Field(True, description="Whether the 3D scene runs.")
 
+    recording: bool = Field(True, description="Whether the live session is recorded.")
+    recordings_dir: Path | None = Field(None, description="Where recordings are kept; `recordings` in the data folder if unset.")
+    recordings_quota_gb: float = Field(
+        10.0, gt=0.0, description="Most that recordings take; the oldest go first, starred ones never."
+    )
+    recordings_keep_free_gb: float = Field(
+        0.5, ge=0.0, description="Recording stops when the disk has less than this left."
+    )
+    recording_part_minutes: float = Field(60.0, gt=0.0, description="A longer run is recorded in parts of this length.")
+
     @field_validator("scenario")
     @classmethod
     def _known_scenario(cls, name: str) -> str:
@@ -42,6 +52,11 @@ class Settings(BaseSettings):
                 "set VSSEA_TOKEN to at least 16 characters, or listen on 127.0.0.1"
             )
         return self
+
+    @property
+    def recordings_folder(self) -> Path:
+        """Folder of the recordings."""
+        return self.recordings_dir or self.data_dir / "recordings"
 
     @property
     def hosts(self) -> frozenset[str]:
