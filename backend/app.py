@@ -21,6 +21,7 @@ from backend.api.resources import resources
 from backend.compute.pool import Pool
 from backend.presets.store import PresetStore
 from backend.processes import set_niceness
+from backend.recordings.recorder import Recorder
 from backend.scene.process import SceneProcess
 from backend.scene.relay import scene_routes
 from backend.session.session import Session
@@ -37,7 +38,8 @@ def create_app(settings: Settings) -> FastAPI:
     store = PresetStore(settings.data_dir)
     pool = Pool()
     tasks = Tasks(pool.tasks)
-    session = Session(settings, pool, store)
+    recorder = Recorder(settings)
+    session = Session(settings, pool, store, recorder)
     scene = SceneProcess(session.ring_name)
     answers = tempfile.TemporaryDirectory(prefix="vssea-")
 
@@ -45,12 +47,14 @@ def create_app(settings: Settings) -> FastAPI:
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         set_niceness(WEB_NICENESS)
         session.start()
+        recorder.start(session.ring_name, session.tell, session.note_recording)
         if settings.scene:
             scene.start()
         gc.collect()
         gc.freeze()  # a collection of all that was imported would stall STOP for tens of milliseconds
         yield
         await scene.stop()
+        await recorder.stop()
         await session.close()
         await tasks.stop()
         await pool.stop()
@@ -66,11 +70,12 @@ def create_app(settings: Settings) -> FastAPI:
     app.include_router(resources(session, pool, store, answers.name))
     app.include_router(analysis(session, pool, tasks, answers.name))
     app.include_router(export(session, pool))
-    app.include_router(live(session))
+    app.include_router(live(session, recorder))
     app.include_router(documentation())
     # The guard has checked Host and Origin of every websocket before this.
     app.router.routes.extend(scene_routes(lambda: scene.port, lambda _: True, lambda: scene.sentence))
     static = Path(str(importlib.resources.files("frontend_static")))
     app.mount("/", StaticFiles(directory=static, html=True), name="page")
     app.state.session = session
+    app.state.recorder = recorder
     return app

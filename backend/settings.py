@@ -28,7 +28,9 @@ class Settings(BaseSettings):
     scene: bool = Field(True, description="Whether the 3D scene runs.")
 
     recording: bool = Field(True, description="Whether the live session is recorded.")
-    recordings_dir: Path | None = Field(None, description="Where recordings are kept; `recordings` in the data folder if unset.")
+    recordings_dir: Path | None = Field(
+        None, description="Where recordings are kept; `recordings` in the data folder if unset."
+    )
     recordings_quota_gb: float = Field(
         10.0, gt=0.0, description="Most that recordings take; the oldest go first, starred ones never."
     )

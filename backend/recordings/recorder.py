@@ -40,9 +40,7 @@ class Recorder:
 
     # ---- life
 
-    def start(
-        self, ring_name: str, tell: Callable[[dict[str, Any]], None], note: Callable[[str, bool], None]
-    ) -> None:
+    def start(self, ring_name: str, tell: Callable[[dict[str, Any]], None], note: Callable[[str, bool], None]) -> None:
         """Begin to record what the ring holds; `tell` reaches the pages, `note` the event log (a sentence, is it trouble)."""
         self._tell, self._note = tell, note
         if self._settings.recording:
@@ -66,7 +64,9 @@ class Recorder:
             await link.start(ring_name, self._settings, self._resumed(), list(self._waiting))
             await link.ended.wait()
             await link.stop()
-            self._note("The recording process ended unexpectedly and is started anew; the ring keeps a minute for it.", True)
+            self._note(
+                "The recording process ended unexpectedly and is started anew; the ring keeps a minute for it.", True
+            )
             pause_s = RESTART_PAUSE_S if self._wrote.sample > before else min(2 * pause_s, LONGEST_PAUSE_S)
             await asyncio.sleep(pause_s)
 
@@ -81,6 +81,10 @@ class Recorder:
         """Return the id of the recording that is being written."""
         return self._wrote.recording if self._link is not None else None
 
+    def progress(self) -> Wrote:
+        """Return how far the writer is."""
+        return self._wrote
+
     def document(self) -> dict[str, Any]:
         """Return how the recorder stands, as docs/protocol.md has it."""
         state, sentence = self._words()
@@ -93,7 +97,9 @@ class Recorder:
         if self._trouble is not None:
             return "stopped", f"Not recording: {self._trouble}. The control goes on."
         if wrote.recording is None:
-            return ("idle", "Waiting for the first sample.") if wrote.item else ("starting", "The recorder is starting.")
+            return (
+                ("idle", "Waiting for the first sample.") if wrote.item else ("starting", "The recorder is starting.")
+            )
         lost = f", {wrote.lost} samples lost" if wrote.lost else ""
         return "recording", f"Recording, {wrote.size / 1e6:.1f} MB{lost}."
 
@@ -114,7 +120,9 @@ class Recorder:
         elif isinstance(answer, Stopped):
             self._trouble = answer.sentence or None
             self._note(
-                f"Recording stopped: {answer.sentence}. The control goes on." if answer.sentence else "Recording goes on",
+                f"Recording stopped: {answer.sentence}. The control goes on."
+                if answer.sentence
+                else "Recording goes on",
                 bool(answer.sentence),
             )
             self._tell_state()

@@ -22,6 +22,7 @@ from backend.recordings.summary_section import summary_section
 from backend.telemetry.ring import Samples
 
 LIBRARY = "vssea"
+BEGINNING = ".beginning"
 HEAD, ENDING = "recording", "ending"
 """Names of the metadata records at begin and end."""
 
@@ -51,9 +52,16 @@ class RecordingFile:
         Metadata(HEAD, head).write(builder)
         for record in declarations():
             record.write(builder)
-        file = path.open("x+b", buffering=0)
-        fcntl.flock(file, fcntl.LOCK_EX)
-        _write(file, MAGIC + builder.end())
+        beginning = path.with_name(f"{path.name}{BEGINNING}")
+        file = beginning.open("w+b", buffering=0)
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _write(file, MAGIC + builder.end())
+            beginning.rename(path)  # under its own name a file is a recording from its first byte on
+        except BaseException:
+            file.close()
+            beginning.unlink(missing_ok=True)
+            raise
         return cls(path, file, scan(path))
 
     @classmethod

@@ -37,7 +37,15 @@ class WriterLink:
         self._pipe, theirs = CONTEXT.Pipe()
         part_s, keep_free = 60.0 * settings.recording_part_minutes, round(1e9 * settings.recordings_keep_free_gb)
         self._process = await asyncio.to_thread(
-            started, "vssea recorder", ENTRY, ring_name, str(settings.recordings_folder), part_s, keep_free, resumed, theirs
+            started,
+            "vssea recorder",
+            ENTRY,
+            ring_name,
+            str(settings.recordings_folder),
+            part_s,
+            keep_free,
+            resumed,
+            theirs,
         )
         theirs.close()
         asyncio.get_running_loop().add_reader(self._pipe.fileno(), self._receive)

@@ -126,6 +126,11 @@ class Writing:
         file.finish(reason=reason, lost=str(self._lost))
         self._tell(Ended(file.head["id"], str(file.path)))
 
+    def abandon(self) -> None:
+        """Leave the present recording unfinished, as the end of the process does."""
+        if self._file is not None:
+            self._file.close()
+
     # ---- samples
 
     def _write_samples(self, now_s: float) -> None:
@@ -145,15 +150,17 @@ class Writing:
             self._append(samples)
 
     def _append(self, samples: Samples) -> None:
-        for start in range(0, len(samples), CHUNK_SAMPLES):
-            chunk = samples[start : start + CHUNK_SAMPLES]
-            if chunk[0, INDEX["time"]] >= self._part * self._part_s and self._run is not None:
+        times, start = samples[:, INDEX["time"]], 0
+        while start < len(samples) and self._run is not None and self._file is not None:
+            if times[start] >= self._part * self._part_s:
                 self.end(f"goes on in part {self._part + 1}")
-                self._create(self._run, chunk, int(chunk[0, INDEX["time"]] // self._part_s) + 1)
-            if self._file is None:
-                return
+                self._create(self._run, samples[start:], int(times[start] // self._part_s) + 1)
+                continue
+            border = int(np.searchsorted(times, self._part * self._part_s))
+            chunk = samples[start : min(start + CHUNK_SAMPLES, border)]
             self._file.append_samples(chunk, self._next)
             self._next += len(chunk)
+            start += len(chunk)
 
     def _open(self, epoch: int, samples: Samples, now_s: float) -> bool:
         """Begin the recording of a run; return whether what is needed for it is known."""

@@ -203,8 +203,13 @@ class Session:
         self.journal.event(event)
         self.tell({"type": "event", "event": event.document()})
 
+    def note_recording(self, sentence: str, is_trouble: bool) -> None:
+        """Log an event of the recorder."""
+        self.note("recording", sentence, "recorder", "warning" if is_trouble else "info")
+
     def note(self, kind: Kind, text: str, by: str, severity: Severity = "info") -> None:
         """Log an event of now."""
+        self.status.follow(self.ring.latest())
         self.log.add(kind, text, by, self.status.epoch, self.status.time_s, severity)
 
     # ---- commands
