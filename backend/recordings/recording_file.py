@@ -6,7 +6,6 @@ with one call. `reopen` cuts off what is torn and goes on.
 
 import fcntl
 import json
-import os
 from collections.abc import Sequence
 from itertools import groupby
 from pathlib import Path
@@ -109,9 +108,10 @@ class RecordingFile:
             content, place = document_chunk(list(group), self.begin_ns, self._sequences[channel], self._offset)
             self._append(content, place)
 
-    def sync(self) -> None:
-        """Let the disk have what was written, against a power cut."""
-        os.fdatasync(self._file.fileno())
+    @property
+    def descriptor(self) -> int:
+        """The open file's descriptor."""
+        return self._file.fileno()
 
     def finish(self, **ending: str) -> None:
         """Write the index at the end, with `ending` as metadata, and close."""
@@ -121,7 +121,6 @@ class RecordingFile:
         self._found.metadata_places.append((ENDING, self._offset, len(content)))
         self._append(content)
         self._append(summary_section(self._found, declarations(), self._offset))
-        self.sync()
         self.close()
 
     def close(self) -> None:

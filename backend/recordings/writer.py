@@ -1,4 +1,4 @@
-"""Entry of the writer process: takes what it is told from the pipe and what is new from the ring, four times a second."""
+"""Entry of the writer process: takes what it is told from the pipe and what is new from the ring, five times a second."""
 
 import signal
 import time
@@ -6,13 +6,10 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from backend.processes import set_niceness
-
 if TYPE_CHECKING:
     from backend.recordings.writing import Writing
 
-TURN_S = 0.25
-NICENESS = 5
+TURN_S = 0.2
 
 
 def run_writer(
@@ -25,9 +22,9 @@ def run_writer(
 ) -> None:
     """Record until `pipe` closes, then finish what is open."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is the web process's to handle
-    set_niceness(NICENESS)  # a disk may wait, the control loop may not
     from backend.recordings.messages import Begin
-    from backend.recordings.writing import Writing
+    from backend.recordings.syncing import Syncing
+    from backend.recordings.writing import Writing, free_bytes
     from backend.telemetry.ring import RingReader
 
     def tell(answer: object) -> None:
@@ -37,7 +34,8 @@ def run_writer(
             return  # the web process has left: what is open is finished all the same
 
     Path(folder).mkdir(parents=True, exist_ok=True)
-    writing = Writing(RingReader(ring_name), Path(folder), part_s, keep_free, tell)
+    sync = Syncing()
+    writing = Writing(RingReader(ring_name), Path(folder), part_s, keep_free, tell, free_bytes, sync)
     run, path, sample, item = resumed
     writing.resume(run if isinstance(run, Begin) else None, Path(path) if path else None, sample, item)
     due = time.monotonic()
@@ -46,6 +44,7 @@ def run_writer(
         due = max(due + TURN_S, time.monotonic())
     writing.turn(time.monotonic())
     writing.end("the server ended")
+    sync.finish()
 
 
 def _received(pipe: Connection, writing: "Writing", due: float) -> bool:

@@ -1,5 +1,6 @@
 """From the ring into files: one recording a run, cut into parts when it is long. No clock and no pipe of its own."""
 
+import os
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -25,6 +26,7 @@ BEGIN_LIMIT_S = 5.0
 """So long samples wait for the word of what run they belong to; the ring holds a minute."""
 SYNC_EVERY_S = 1.0
 Free = Callable[[Path], int]
+Sync = Callable[[int, bool], None]
 
 
 def free_bytes(folder: Path) -> int:
@@ -43,9 +45,10 @@ class Writing:
         keep_free: int,
         tell: Callable[[Answer], None],
         free: Free = free_bytes,
+        sync: Sync = lambda descriptor, must: None,
     ) -> None:
         self._ring, self._folder, self._part_s, self._keep_free = ring, folder, part_s, keep_free
-        self._tell, self._free = tell, free
+        self._tell, self._free, self._sync = tell, free, sync
         self._file: RecordingFile | None = None
         self._run: Begin | None = None
         self._scenario: dict[str, Any] = {}
@@ -95,7 +98,7 @@ class Writing:
                 self._stop_is(None)
                 self._write_samples(now_s)
                 self._write_notes()
-                self._sync(now_s)
+                self._sync_now_and_then(now_s)
             else:
                 self._leave(why)
         except OSError as error:
@@ -113,17 +116,22 @@ class Writing:
             return Wrote(done, self._next, None, None, 0, 0, self._lost)
         return Wrote(done, self._next, file.head["id"], str(file.path), file.size, file.samples, self._lost)
 
-    def _sync(self, now_s: float) -> None:
+    def _sync_now_and_then(self, now_s: float) -> None:
         if now_s - self._synced_at >= SYNC_EVERY_S and self._file is not None:
             self._synced_at = now_s
-            self._file.sync()
+            self._sync(self._file.descriptor, False)
 
     def end(self, reason: str) -> None:
         """Finish the present recording."""
         file, self._file = self._file, None
         if file is None:
             return
-        file.finish(reason=reason, lost=str(self._lost))
+        descriptor = os.dup(file.descriptor)
+        try:
+            file.finish(reason=reason, lost=str(self._lost))
+            self._sync(descriptor, True)
+        finally:
+            os.close(descriptor)
         self._tell(Ended(file.head["id"], str(file.path)))
 
     def abandon(self) -> None:
