@@ -11,15 +11,16 @@ from pydantic import BaseModel, ValidationError
 
 from backend.compute.pool import JobFailedError, JobRefusedError, Pool
 from backend.loop import messages
-from backend.presets.store import PresetStore
+from backend.presets.last import InForce
 from backend.problem import Problem, from_validation, refused
-from backend.session.arguments import Loading, Named, Nothing, Pace, Samples
+from backend.session.arguments import Applying, Loading, Named, Nothing, Pace, Samples, Saving
 from backend.session.changes import Changes, after_change, begun_with, differences, valued, with_changes
 from backend.session.control_link import ControlLink
 from backend.session.disturbance_watch import DisturbanceWatch
 from backend.session.events import Event, EventLog, Kind, Severity
 from backend.session.fault_snapshot import save_fault_snapshot
 from backend.session.health import Health
+from backend.session.kept_run import KeptRun
 from backend.session.limit_watch import LimitWatch
 from backend.session.live_margins import LiveMargins
 from backend.session.notes import ChangeNotes, Note
@@ -27,6 +28,7 @@ from backend.session.preset_commands import PresetCommands
 from backend.session.sentences import change_words
 from backend.session.status import Status
 from backend.settings import Settings
+from backend.store.database import Database
 from backend.telemetry.ring import Ring, RingReader
 from backend.telemetry.stop_flag import StopFlag
 from vssea_core.scenario import Scenario
@@ -46,11 +48,11 @@ EVENT_KINDS: dict[str, Kind] = {
 class Session:
     """One live session on a simulated rig."""
 
-    def __init__(self, settings: Settings, pool: Pool, store: PresetStore) -> None:
-        self._settings, self._pool, self._store = settings, pool, store
+    def __init__(self, settings: Settings, pool: Pool, database: Database) -> None:
+        self._settings, self._pool = settings, pool
         self.scenario: Scenario = SCENARIOS[settings.scenario]
         self._beginning = self.scenario  # as it stands at t = 0, before the sequence changes it
-        self.preset: str | None = None
+        self.preset: InForce | None = None
         self.status = Status()
         self._segment, self._flag = Ring(), StopFlag()
         self.ring_name = self._segment.name
@@ -66,7 +68,8 @@ class Session:
         self._turn = asyncio.Lock()
         self._tasks: set[asyncio.Task[None]] = set()
         self._save_timer: asyncio.TimerHandle | None = None
-        self.presets = PresetCommands(store, self)
+        self.presets = PresetCommands(database, self)
+        self._kept = KeptRun(self.presets.presets, self)
         self._commands: dict[str, tuple[type[BaseModel], Callable[[Any, str], Awaitable[Message]]]] = {
             "tune": (Changes, self.tune),
             "set_reference": (Changes, self.set_reference),
@@ -79,8 +82,8 @@ class Session:
             "reset": (Nothing, self.reset),
             "set_pace": (Pace, self.set_pace),
             "stop": (Nothing, self.stop),
-            "save_preset": (Named, self.presets.save),
-            "apply_preset": (Named, self.presets.apply),
+            "save_preset": (Saving, self.presets.save),
+            "apply_preset": (Applying, self.presets.apply),
             "delete_preset": (Named, self.presets.delete),
         }
 
@@ -100,14 +103,14 @@ class Session:
         await asyncio.gather(*self._tasks, return_exceptions=True)
         if self._save_timer is not None:
             self._save_timer.cancel()
-            await asyncio.to_thread(self._store.save_last, self._beginning, self.preset)
+            await self._kept.write()
         await self._link.stop()
         self.ring.close()
         self._flag.close()
         self._segment.close()
 
     async def _begin(self) -> None:
-        last = await asyncio.to_thread(self._store.last)
+        last = await self._kept.read()
         if last is not None:
             self.scenario, self.preset = last.scenario, last.preset
         try:
@@ -160,6 +163,11 @@ class Session:
 
     # ---- what pages see
 
+    @property
+    def beginning(self) -> Scenario:
+        """The scenario as it stands at t = 0, before its sequence changes it."""
+        return self._beginning
+
     def snapshot(self) -> Message:
         """Return the state in words and figures, as docs/protocol.md has it."""
         self.status.follow(self.ring.latest())
@@ -168,10 +176,7 @@ class Session:
 
     def document(self, by: str = "server") -> Message:
         """Return the live scenario and its preset."""
-        preset = None
-        if self.preset is not None:
-            saved = self._store.known(self.preset)
-            preset = saved and saved.document()
+        preset = self.preset and self.preset.document()
         differs = self._beginning != self.scenario
         beginning = self._beginning.model_dump(mode="json") if differs else None
         return {
@@ -404,4 +409,4 @@ class Session:
 
     async def _save(self) -> None:
         self._save_timer = None
-        await asyncio.to_thread(self._store.save_last, self._beginning, self.preset)
+        await self._kept.write()
