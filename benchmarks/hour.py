@@ -91,9 +91,8 @@ def main() -> None:
         opened = time.perf_counter() - begun
         single = per_message(Path(folder) / "messages.mcap", source, 60_000)
         print(f"one hour at 1 kHz, {len(FIELDS)} numbers a sample, `realistic`")
-        print(
-            f"  {size / 1e6:.0f} MB, {found.samples} samples, lost {lost}, written in {taken:.1f} s ({HOUR / 1e3 / taken:.0f} x real time)"
-        )
+        pace = HOUR / 1e3 / taken
+        print(f"  {size / 1e6:.0f} MB, {found.samples} samples, lost {lost}, {taken:.1f} s ({pace:.0f} x real time)")
         print(
             f"  memory after the first minute {first_mb:.0f} MB, at the end {last_mb:.0f} MB; opened in {1e3 * opened:.0f} ms"
         )

@@ -10,9 +10,9 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from backend.compute.pool import JobFailedError, Pool
-from backend.presets.store import PresetStore
+from backend.presets.last import InForce
 from backend.problem import Problem, from_validation
-from backend.session.arguments import Loading, Named, Nothing, Pace, Samples
+from backend.session.arguments import Applying, Loading, Named, Nothing, Pace, Samples, Saving
 from backend.session.changes import Changes
 from backend.session.control_link import ControlLink
 from backend.session.control_reports import ControlReports
@@ -20,6 +20,7 @@ from backend.session.disturbance_watch import DisturbanceWatch
 from backend.session.events import Event, EventLog, Kind, Severity
 from backend.session.health import Health
 from backend.session.journal import Journal, Silent, Told, Unharming, wall_time
+from backend.session.kept_run import KeptRun
 from backend.session.limit_watch import LimitWatch
 from backend.session.live_margins import LiveMargins
 from backend.session.part_commands import PartCommands
@@ -28,6 +29,7 @@ from backend.session.run_commands import RunCommands
 from backend.session.running_scenario import RunningScenario
 from backend.session.status import Status
 from backend.settings import Settings
+from backend.store.database import Database
 from backend.telemetry.ring import Ring, RingReader
 from backend.telemetry.stop_flag import StopFlag
 from vssea_core.scenario import Scenario
@@ -44,12 +46,12 @@ Message = dict[str, Any]
 class Session:
     """One live session on a simulated rig."""
 
-    def __init__(self, settings: Settings, pool: Pool, store: PresetStore, journal: Journal | None = None) -> None:
-        self.settings, self._pool, self._store = settings, pool, store
+    def __init__(self, settings: Settings, pool: Pool, database: Database, journal: Journal | None = None) -> None:
+        self.settings, self._pool = settings, pool
         self.design = pool.design
         self.journal = Unharming(journal or Silent())
         self.running = RunningScenario(SCENARIOS[settings.scenario])
-        self.preset: str | None = None
+        self.preset: InForce | None = None
         self.status = Status()
         self._segment, self.flag = Ring(), StopFlag()
         self.ring_name = self._segment.name
@@ -66,7 +68,8 @@ class Session:
         self._tasks: set[asyncio.Task[None]] = set()
         self._save_timer: asyncio.TimerHandle | None = None
         self.parts, self.runs = PartCommands(self), RunCommands(self)
-        self.presets = PresetCommands(store, self)
+        self.presets = PresetCommands(database, self)
+        self._kept = KeptRun(self.presets.presets, self)
         self._commands: dict[str, tuple[type[BaseModel], Callable[[Any, str], Awaitable[Message]]]] = {
             "tune": (Changes, self.parts.tune),
             "set_reference": (Changes, self.parts.set_reference),
@@ -79,8 +82,8 @@ class Session:
             "reset": (Nothing, self.runs.reset),
             "set_pace": (Pace, self.runs.set_pace),
             "stop": (Nothing, self.runs.stop),
-            "save_preset": (Named, self.presets.save),
-            "apply_preset": (Named, self.presets.apply),
+            "save_preset": (Saving, self.presets.save),
+            "apply_preset": (Applying, self.presets.apply),
             "delete_preset": (Named, self.presets.delete),
         }
 
@@ -88,6 +91,11 @@ class Session:
     def scenario(self) -> Scenario:
         """The scenario as it stands now."""
         return self.running.now
+
+    @property
+    def beginning(self) -> Scenario:
+        """The scenario as it stands at t = 0, before its sequence changes it."""
+        return self.running.beginning
 
     # ---- life
 
@@ -105,14 +113,14 @@ class Session:
         await asyncio.gather(*self._tasks, return_exceptions=True)
         if self._save_timer is not None:
             self._save_timer.cancel()
-            await asyncio.to_thread(self._store.save_last, self.running.beginning, self.preset)
+            await self._kept.write()
         await self.link.stop()
         self.ring.close()
         self.flag.close()
         self._segment.close()
 
     async def _begin(self) -> None:
-        last = await asyncio.to_thread(self._store.last)
+        last = await self._kept.read()
         if last is not None:
             self.running.load(last.scenario)
             self.preset = last.preset
@@ -179,10 +187,7 @@ class Session:
 
     def document(self, by: str = "server") -> Message:
         """Return the live scenario and its preset."""
-        preset = None
-        if self.preset is not None:
-            saved = self._store.known(self.preset)
-            preset = saved and saved.document()
+        preset = self.preset and self.preset.document()
         differs = self.running.beginning != self.scenario
         beginning = self.running.beginning.model_dump(mode="json") if differs else None
         return {
@@ -265,4 +270,4 @@ class Session:
 
     async def _save(self) -> None:
         self._save_timer = None
-        await asyncio.to_thread(self._store.save_last, self.running.beginning, self.preset)
+        await self._kept.write()
