@@ -6,8 +6,11 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from backend.problem import FieldError, Problem, from_validation, refused
+from backend.words.changes import differences
 from vssea_core.changes import UnknownPath, set_values
 from vssea_core.scenario import Scenario
+
+__all__ = ["Changes", "after_change", "begun_with", "differences", "validated", "valued", "with_changes"]
 
 CONSEQUENCE = "Nothing was changed."
 
@@ -63,15 +66,3 @@ def validated(document: dict[str, Any]) -> Scenario:
         return Scenario.model_validate_json(json.dumps(document))
     except ValidationError as error:
         raise from_validation(error, Scenario, consequence=CONSEQUENCE) from error
-
-
-def differences(before: Any, after: Any, path: str = "") -> dict[str, tuple[Any, Any]]:
-    """Return by path every value that differs between two dumped documents."""
-    if isinstance(before, dict) and isinstance(after, dict):
-        found: dict[str, tuple[Any, Any]] = {}
-        if before.get("kind") != after.get("kind"):
-            return {f"{path}.kind".lstrip("."): (before.get("kind"), after.get("kind"))}
-        for name in after:
-            found |= differences(before.get(name), after[name], f"{path}.{name}".lstrip("."))
-        return found
-    return {} if before == after else {path: (before, after)}

@@ -1,11 +1,11 @@
-"""What a session says in words: its state with the reason, and each change."""
-
-from typing import Any
+"""What a session says in words: its state, with the reason."""
 
 from backend.loop.messages import State
-from vssea_core.fields import Part
+from backend.words.changes import change_words
 from vssea_core.scenario import Scenario
 from vssea_core.signals.documents import Reference
+
+__all__ = ["change_words", "reference_words", "state_sentence"]
 
 
 def state_sentence(state: State, reason: str | None, time_s: float, by: str | None, scenario: Scenario) -> str:
@@ -46,33 +46,3 @@ def reference_words(reference: Reference) -> str:
             return f"jogging at {reference.velocity:.2f} rad/s"
         case "recorded":
             return f"following {len(reference.times_s)} recorded samples"
-
-
-def change_words(scenario: Scenario, path: str, before: Any, after: Any) -> str:
-    """Return one change as `symbol old → new unit`."""
-    label, unit = _label(scenario, path)
-    return f"{label} {_value(before)} → {_value(after)}{' ' + unit if unit else ''}"
-
-
-def _label(scenario: Scenario, path: str) -> tuple[str, str]:
-    here: Any = scenario
-    *parents, last = path.split(".")
-    for name in parents:
-        here = here[int(name)] if isinstance(here, tuple) else getattr(here, name, None)
-    if last == "kind":
-        return parents[-1].replace("_", " "), ""
-    info = type(here).model_fields.get(last) if isinstance(here, Part) else None
-    if info is None:
-        return path, ""
-    extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
-    return str(extra.get("symbol") or info.title or last), str(extra.get("unit") or "")
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, bool) or value is None:
-        return {True: "on", False: "off", None: "none"}[value]
-    if isinstance(value, (int, float)):
-        return f"{value:.4g}"
-    if isinstance(value, (list, dict)):
-        return f"{len(value)} terms" if isinstance(value, list) else "…"
-    return str(value).replace("_", " ")

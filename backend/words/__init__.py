@@ -1,0 +1,1 @@
+"""Changes of the scenario in words, for everybody who tells of them."""
