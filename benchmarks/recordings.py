@@ -24,16 +24,35 @@ from vssea_core.simulation.run import simulate
 SECONDS, PERIOD = 3600, 1e-3
 CHUNK = 250
 """Samples the writer finds at a turn: four turns a second."""
-NINE = ["reference", "link_position", "motor_position", "error", "motor_torque", "link_disturbance", "stiffness", "deflection", "limits"]
+NINE = [
+    "reference",
+    "link_position",
+    "motor_position",
+    "error",
+    "motor_torque",
+    "link_disturbance",
+    "stiffness",
+    "deflection",
+    "limits",
+]
 
 
 def write_hour(path: Path, seconds: int = SECONDS) -> None:
     """Write a recording of a repeated simulated run, its measured channels with noise, so that it packs as a real one does."""
     rows = simulate(REALISTIC).rows
     random = np.random.default_rng(1)
-    head = {"id": path.stem, "format": "1", "begin_ns": "0", "origin": "live", "first_sample": "0", "sample_time_s": repr(PERIOD)}
+    head = {
+        "id": path.stem,
+        "format": "1",
+        "begin_ns": "0",
+        "origin": "live",
+        "first_sample": "0",
+        "sample_time_s": repr(PERIOD),
+    }
     file = RecordingFile.create(path, head)
-    noisy = [column for column, channel in enumerate(CHANNELS) if channel.unit and channel.name not in ("time", "reference")]
+    noisy = [
+        column for column, channel in enumerate(CHANNELS) if channel.unit and channel.name not in ("time", "reference")
+    ]
     samples = np.zeros((CHUNK, COLUMNS))
     samples[:, EPOCH], samples[:, PERIOD_S] = 1, PERIOD
     for first in range(0, round(seconds / PERIOD), CHUNK):
@@ -65,7 +84,10 @@ def main() -> None:
         recording = Recording(path)
         timed("first: summary and overview, in one pass", lambda: summary(recording, cache))
         for words in ("draw the whole hour", "draw the whole hour again"):
-            timed(f"{words}: 1500 points, {len(NINE)} channels", lambda: samples_answer(recording, NINE, points=1500, cache=cache))
+            timed(
+                f"{words}: 1500 points, {len(NINE)} channels",
+                lambda: samples_answer(recording, NINE, points=1500, cache=cache),
+            )
         timed("draw ten minutes of it", lambda: samples_answer(recording, NINE, 900.0, 1500.0, 1500, cache))
         timed("draw one minute of it", lambda: samples_answer(recording, NINE, 900.0, 960.0, 1500, cache))
         timed("draw 10 s of it", lambda: samples_answer(recording, NINE, 1800.0, 1810.0, 1500, cache))
@@ -74,7 +96,9 @@ def main() -> None:
         for form in ("parquet", "csv"):
             timed(f"export as {form}", lambda form=form: export(recording, form, None, -np.inf, np.inf, str(folder)))
     console.print(table)
-    console.print(f"{size / 1e6:.0f} MB on disk, {size / (SECONDS / PERIOD):.0f} bytes a sample; reading took {grown:.0f} MB more memory")
+    console.print(
+        f"{size / 1e6:.0f} MB on disk, {size / (SECONDS / PERIOD):.0f} bytes a sample; reading took {grown:.0f} MB more memory"
+    )
 
 
 def _public(path: Path) -> int:

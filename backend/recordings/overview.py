@@ -9,6 +9,7 @@ import os
 import re
 import tempfile
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,7 @@ from backend.recordings.thinning import extremes
 
 BLOCK = 256
 KEPT = 50
+ROWS_AT_ONCE = 64 * BLOCK
 WIDTH = len(FIELDS)
 BLOCKS = np.dtype(
     [
@@ -37,15 +39,13 @@ class OverviewBuilder:
     def __init__(self, before: Blocks | None = None) -> None:
         self._done = [] if before is None else [before]
         self._last = int(before["last_number"][-1]) if before is not None and len(before) else None
-        self._waiting: list[tuple[NDArray[np.int64], NDArray[np.float64]]] = []
-        self._count = 0
+        self._numbers, self._rows = np.empty(0, np.int64), np.empty((0, WIDTH))
 
     def take(self, numbers: NDArray[np.int64], rows: NDArray[np.float64]) -> None:
-        """Take rows (n, fields) and their sample numbers (n,); whole blocks are made once there is something to make."""
-        self._waiting.append((numbers, rows))
-        self._count += len(rows)
-        if self._count >= 64 * BLOCK:
-            self._make(is_end=False)
+        """Take rows (n, fields) and their sample numbers (n,)."""
+        self._numbers = np.concatenate([self._numbers, numbers])
+        self._rows = np.concatenate([self._rows, rows])
+        self._make(is_end=False)
 
     def blocks(self) -> Blocks:
         """Return the blocks, the last of which may be short."""
@@ -53,13 +53,13 @@ class OverviewBuilder:
         return np.concatenate(self._done) if self._done else np.empty(0, BLOCKS)
 
     def _make(self, is_end: bool) -> None:
-        if not self._count:
+        numbers, rows = self._numbers, self._rows
+        if not len(rows):
             return
-        numbers, rows = (np.concatenate(each) for each in zip(*self._waiting, strict=True))
         before = numbers[0] - 1 if self._last is None else self._last
         gaps = np.flatnonzero(np.diff(numbers, prepend=before) % 2**32 != 1)
         pieces = np.unique(np.concatenate([[0], gaps, [len(rows)]]))
-        starts = np.concatenate([np.arange(a, b, BLOCK) for a, b in zip(pieces[:-1], pieces[1:], strict=True)])
+        starts = np.concatenate([np.arange(a, b, BLOCK) for a, b in pairwise(pieces)])
         stop = len(rows) if is_end or len(rows) - starts[-1] == BLOCK else int(starts[-1])
         starts = starts[starts < stop]
         if not len(starts):
@@ -75,15 +75,25 @@ class OverviewBuilder:
             made["low"], made["high"], made["low_first"] = found.low, found.high, found.low_first
         self._done.append(made)
         self._last = int(numbers[stop - 1])
-        self._waiting, self._count = [(numbers[stop:], rows[stop:])], len(rows) - stop
+        self._numbers, self._rows = numbers[stop:], rows[stop:]
 
 
 def all_rows(
     recording: Recording, from_s: float = -np.inf, to_s: float = np.inf
 ) -> Iterator[tuple[NDArray[np.int64], NDArray[np.float64]]]:
     """Yield sample numbers (n,) and rows (n, fields) of a span, piece by piece."""
+    numbers: list[NDArray[np.int64]] = []
+    rows: list[NDArray[np.float64]] = []
+    count = 0
     for messages in recording.blocks(from_s, to_s):
-        yield messages["sequence"].astype(np.int64), values_of(messages)
+        numbers.append(messages["sequence"].astype(np.int64))
+        rows.append(values_of(messages))
+        count += len(messages)
+        if count >= ROWS_AT_ONCE:
+            yield np.concatenate(numbers), np.concatenate(rows)
+            numbers, rows, count = [], [], 0
+    if count:
+        yield np.concatenate(numbers), np.concatenate(rows)
 
 
 def overview(recording: Recording, cache: Path) -> Blocks:

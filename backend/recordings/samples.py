@@ -2,6 +2,7 @@
 
 import json
 import struct
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -40,7 +41,8 @@ def samples_answer(
     cache: Path | None = None,
 ) -> bytes:
     """Return the binary answer of docs/protocol.md. Raises ValueError for an unknown channel or a wrong number of points."""
-    shown = drawn(recording, channels, from_s, to_s, points, cache)
+    blocks = None if cache is None else lambda: overview(recording, cache)
+    shown = drawn(recording, channels, from_s, to_s, points, blocks)
     low_s, high_s = recording.span
     head = {
         "from_s": float(max(from_s, low_s)), "to_s": float(min(to_s, high_s)), "samples": len(shown.time), "exact": shown.exact,
@@ -54,16 +56,21 @@ def samples_answer(
 
 
 def drawn(
-    recording: Recording, channels: list[str], from_s: float, to_s: float, points: int, cache: Path | None = None
+    recording: Recording,
+    channels: list[str],
+    from_s: float,
+    to_s: float,
+    points: int,
+    blocks: Callable[[], Blocks] | None = None,
 ) -> Drawn:
-    """Return what is drawn of a span in about `points` rows; a wide span needs the overview, kept in `cache`."""
+    """Return what is drawn of a span in about `points` rows; a wide span is drawn from the overview, if `blocks` gives it."""
     if not 4 <= points <= MOST_POINTS:
         raise ValueError(f"points is {points}; expected 4 to {MOST_POINTS}")
     if not from_s <= to_s:
         raise ValueError(f"the span begins at {from_s:g} s and ends at {to_s:g} s; expected an end after its begin")
     runs = points // 2
-    if cache is not None and recording.count(from_s, to_s) > runs * BLOCK:
-        return _from_overview(recording, channels, from_s, to_s, runs, overview(recording, cache))
+    if blocks is not None and recording.count(from_s, to_s) > runs * BLOCK:
+        return _from_overview(recording, channels, from_s, to_s, runs, blocks())
     block = recording.read(["time", *channels], from_s, to_s)
     time, rows, gaps = block.rows[:, 0], block.rows[:, 1:], block.gaps()
     if len(rows) <= points:

@@ -55,15 +55,18 @@ def _merged(
 ) -> tuple[Numbers, Numbers, NDArray[np.bool_]]:
     # A shorter run repeats its last row, which changes neither its extremes nor where they first are.
     rows = np.minimum(starts[:, None] + np.arange(width), ends[:, None] - 1)
-    lows, highs = low[rows], high[rows]
-    is_nothing = np.isnan(lows).all(axis=1)
-    least = np.where(np.isnan(lows), np.inf, lows).argmin(axis=1)[:, None]
-    greatest = np.where(np.isnan(highs), -np.inf, highs).argmax(axis=1)[:, None]
+    lows = low[rows]
+    highs = lows if high is low else high[rows]
+    gone = np.isnan(lows)
+    has_gone = bool(gone.any())
+    least = (np.where(gone, np.inf, lows) if has_gone else lows).argmin(axis=1)[:, None]
+    greatest = (np.where(gone, -np.inf, highs) if has_gone else highs).argmax(axis=1)[:, None]
     together = np.take_along_axis(low_first[rows], least, axis=1)
     first = np.where(least == greatest, together, least < greatest)[:, 0]
     found_low = np.take_along_axis(lows, least, axis=1)[:, 0]
     found_high = np.take_along_axis(highs, greatest, axis=1)[:, 0]
-    # Beside NaN, a run may hold nothing but the infinity that stood in for it.
-    found_low = np.where(np.isnan(found_low) & ~is_nothing, np.inf, found_low)
-    found_high = np.where(np.isnan(found_high) & ~is_nothing, -np.inf, found_high)
-    return np.where(is_nothing, np.nan, found_low), np.where(is_nothing, np.nan, found_high), first
+    if has_gone:  # beside NaN, a run may hold nothing but the infinity that stood in for it
+        is_nothing = gone.all(axis=1)
+        found_low = np.where(is_nothing, np.nan, np.where(np.isnan(found_low), np.inf, found_low))
+        found_high = np.where(is_nothing, np.nan, np.where(np.isnan(found_high), -np.inf, found_high))
+    return found_low, found_high, first
