@@ -66,6 +66,22 @@ def empty_messages(count: int) -> np.ndarray:
     return messages
 
 
+def values_of(messages: np.ndarray) -> np.ndarray:
+    """Return all numbers of telemetry messages (n,) as (n, fields), in the order of FIELDS."""
+    content = np.ascontiguousarray(messages)
+    values = np.empty((len(content), len(FIELDS)))
+    for first, last in _RUNS:
+        offset = MESSAGE.fields[f"value{first}"][1]  # type: ignore[index]
+        shape, strides = (len(content), last - first), (MESSAGE.itemsize, len(TAGS[first]) + 8)
+        values[:, first:last] = np.ndarray(shape, "<f8", content.data, offset, strides)
+    return values
+
+
+_SHORT = sum(len(tag) == 1 for tag in TAGS)
+_RUNS = ((0, _SHORT), (_SHORT, len(FIELDS)))
+"""Fields that follow each other at equal distances, since their tags are of one length."""
+
+
 def telemetry_schema() -> bytes:
     """Return the FileDescriptorSet of `vssea.Telemetry`; each field's comment has symbol, label and unit."""
     file = FileDescriptorProto(name="vssea/telemetry.proto", package="vssea", syntax="proto3")

@@ -72,6 +72,17 @@ class Recording:
             return 0.0, 0.0
         return (self._blocks[0].start_ns - self.begin_ns) / NS, (self._blocks[-1].end_ns - self.begin_ns) / NS
 
+    def count(self, from_s: float = -np.inf, to_s: float = np.inf) -> int:
+        """Return about how many samples a span has, told from where its chunks begin and end."""
+        total = 0.0
+        for place in self._blocks:
+            begin, end = (place.start_ns - self.begin_ns) / NS, (place.end_ns - self.begin_ns) / NS
+            if begin >= from_s and end <= to_s:
+                total += place.messages
+            elif end >= from_s and begin <= to_s:
+                total += place.messages * (min(end, to_s) - max(begin, from_s)) / (end - begin)
+        return round(total)
+
     def read(self, channels: list[str], from_s: float = -np.inf, to_s: float = np.inf) -> Block:
         """Return the samples of a span, both ends included. Raises ValueError for a channel that there is not."""
         parts = [_columns(records, channels) for records in self.blocks(from_s, to_s)]
