@@ -75,6 +75,7 @@ class Page:
             "channels": [channel._asdict() for channel in CHANNELS], "snapshot": session.snapshot(),
             "document": session.document(), "events": session.log.last(100), "margins": session.margins.newest,
             "recorder": self._recorder.document(),
+            **session.history.greeting(),
         }  # fmt: skip
         with suppress(WebSocketDisconnect, RuntimeError, TimeoutError):
             await self._send(json.dumps(hello))

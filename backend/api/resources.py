@@ -105,6 +105,11 @@ def resources(session: Session, pool: Pool, folder: str) -> APIRouter:
         """Return the newest events, oldest first."""
         return session.log.last(last)
 
+    @router.get("/session/history")
+    def history(last: Annotated[int, Query(ge=1, le=200)] = 200) -> list[Document]:
+        """Return the newest changes that were made, oldest first."""
+        return session.history.last(last)
+
     @router.post("/session/{command}", openapi_extra=body_named("arguments of the command"))
     async def command(command: str, request: Request) -> Document:
         """Run a command of the live session; docs/protocol.md lists them."""

@@ -51,6 +51,18 @@ class Pace(Arguments):
     factor: float = Field(ge=0.05, le=4.0, strict=True, description="Real-time factor asked.")
 
 
+class SavePoint(Arguments):
+    """What to call a save point."""
+
+    name: str | None = Field(None, min_length=1, max_length=80, description="Its name; without one it gets its time.")
+
+
+class EntryNumber(Arguments):
+    """An entry of the history."""
+
+    number: int = Field(ge=1, strict=True, description="Number of the entry.")
+
+
 class Loading(Arguments):
     """Which scenario to load: a ready one by name, or a whole document."""
 

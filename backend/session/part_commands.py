@@ -1,6 +1,5 @@
 """The commands that change one part of the running scenario: tuning, reference, stiffness, disturbances."""
 
-from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Any
 
 from backend.loop import messages
@@ -9,7 +8,7 @@ from backend.session.journal import Change
 from backend.session.notes import ChangeNotes, Note
 from backend.session.planning import planned
 from backend.session.running_scenario import part_differences, part_document
-from backend.session.sentences import change_words
+from backend.session.sentences import changes_words
 from vssea_core.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -29,12 +28,6 @@ class PartCommands:
     def __init__(self, session: "Session") -> None:
         self._session = session
         self._notes = ChangeNotes(self._note)
-        self._ways: dict[str, Callable[[Scenario], Awaitable[messages.Done]]] = {
-            "tuning": self._install,
-            "reference": lambda new: session.link.command(messages.SetReference(new.reference)),
-            "stiffness_reference": self._set_stiffness,
-            "disturbances": lambda new: session.link.command(messages.SetDisturbances(new.disturbances)),
-        }
 
     async def tune(self, asked: Changes, by: str) -> Message:
         """Change the tuning; refused, and the old one kept, if its own sampled loop is unstable."""
@@ -65,19 +58,61 @@ class PartCommands:
     async def change_in_turn(self, part: str, asked: Changes, by: str) -> Differences:
         """Change a part while the session's turn is held; return what became different."""
         session = self._session
-        old = session.scenario
-        new = with_changes(old, part, asked)
-        found = part_differences(old, new, part)
+        new = with_changes(session.scenario, part, asked)
+        found = part_differences(session.scenario, new, part)
         if found:
-            done = await self._ways[part](new)
-            session.running.adopt(part, new, asked)
-            session.margins.ask(session.scenario, session.status.tuning_id)
-            self.tell_journal(part, found, by, done.time_s)
-            await self._plan_sequence()
-            self._notes.add(part, by, found, session.status.epoch, done.time_s)
+            before = session.history.state()
+            prepared = await self._prepared(new, [part])
+            time_s = await self._apply(new, part, prepared, asked, by)
+            session.history.record(by, part, found, before, time_s)
+            self._notes.add(part, by, found, session.status.epoch, time_s)
             session.tell(session.document(by))
             session.save_soon()
         return found
+
+    async def put(self, new: Scenario, parts: list[str], by: str) -> float:
+        """Put whole parts of another scenario in place of the present ones, all or none, while the turn is held.
+
+        Returns the time [s] from which all are in force. Raises Problem if they do not fit together.
+        """
+        session = self._session
+        prepared = await self._prepared(new, parts)
+        time_s = session.status.time_s
+        for part in parts:
+            time_s = await self._apply(new, part, prepared, Changes(replace=part_document(new, part)), by)
+        session.tell(session.document(by))
+        session.save_soon()
+        return time_s
+
+    async def _prepared(self, new: Scenario, parts: list[str]) -> Any:
+        """Return what the control process needs of a scenario, None if the parts cannot make it unstable."""
+        matters = new.sequence or {"tuning", "stiffness_reference"} & set(parts)
+        return await planned(self._session.design, new) if matters else None
+
+    async def _apply(self, new: Scenario, part: str, prepared: Any, asked: Changes, by: str) -> float:
+        session = self._session
+        found = part_differences(session.scenario, new, part)
+        done = await self._send(new, part, prepared)
+        session.running.adopt(part, new, asked)
+        session.margins.ask(session.scenario, session.status.tuning_id)
+        self.tell_journal(part, found, by, done.time_s)
+        await self._plan_sequence()
+        return done.time_s
+
+    async def _send(self, new: Scenario, part: str, prepared: Any) -> messages.Done:
+        session = self._session
+        match part:
+            case "tuning":
+                number = session.status.tuning_id + 1
+                done = await session.link.command(messages.Install(new.tuning, prepared.prepared, number))
+                session.status.tuning_id = number
+                return done
+            case "reference":
+                return await session.link.command(messages.SetReference(new.reference))
+            case "stiffness_reference":
+                return await session.link.command(messages.SetStiffness(new.stiffness_reference))
+            case _:
+                return await session.link.command(messages.SetDisturbances(new.disturbances))
 
     def follow(self, report: messages.Followed) -> None:
         """Take over a change that the sequence made."""
@@ -102,17 +137,6 @@ class PartCommands:
         status = session.status
         session.journal.change(Change(status.epoch, at_s, by, part, status.tuning_id, words, after, document))
 
-    async def _install(self, new: Scenario) -> messages.Done:
-        session = self._session
-        prepared = await planned(session.design, new)
-        done = await session.link.command(messages.Install(new.tuning, prepared.prepared, session.status.tuning_id + 1))
-        session.status.tuning_id += 1
-        return done
-
-    async def _set_stiffness(self, new: Scenario) -> messages.Done:
-        await planned(self._session.design, new)
-        return await self._session.link.command(messages.SetStiffness(new.stiffness_reference))
-
     async def _plan_sequence(self) -> None:
         """Let what is left of the sequence start from the changed scenario."""
         session = self._session
@@ -120,9 +144,13 @@ class PartCommands:
             prepared = await planned(session.design, session.scenario)
             await session.link.command(messages.Plan(prepared.followers))
 
+    def kind_of(self, part: str) -> "Kind":
+        """Return the kind of the events that tell of changes of a part."""
+        return EVENT_KINDS.get(part, "scenario")
+
     def _note(self, part: str, by: str, note: Note) -> None:
         words = self._words(part, note.changes)
         self._session.log.add(EVENT_KINDS[part], ", ".join(words), by, note.epoch, note.time_s)
 
     def _words(self, part: str, found: Differences) -> list[str]:
-        return [change_words(self._session.scenario, f"{part}.{path}", *pair) for path, pair in found.items()]
+        return changes_words(self._session.scenario, part, found)

@@ -31,8 +31,10 @@ class RunCommands:
             )
         session = self._session
         async with session.turn:
+            before = session.history.state()
             await self.load(scenario)
             session.preset = None
+            session.history.record_load(by, before)
             session.tell(session.document(by))
             session.save_soon()
         session.note("scenario", f"scenario {scenario.name} loaded", by)

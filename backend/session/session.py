@@ -12,13 +12,24 @@ from pydantic import BaseModel, ValidationError
 from backend.compute.pool import JobFailedError, Pool
 from backend.presets.last import InForce
 from backend.problem import Problem, from_validation
-from backend.session.arguments import Applying, Loading, Named, Nothing, Pace, Samples, Saving
+from backend.session.arguments import (
+    Applying,
+    EntryNumber,
+    Loading,
+    Named,
+    Nothing,
+    Pace,
+    Samples,
+    SavePoint,
+    Saving,
+)
 from backend.session.changes import Changes
 from backend.session.control_link import ControlLink
 from backend.session.control_reports import ControlReports
 from backend.session.disturbance_watch import DisturbanceWatch
 from backend.session.events import Event, EventLog, Kind, Severity
 from backend.session.health import Health
+from backend.session.history_commands import HistoryCommands
 from backend.session.journal import Journal, Silent, Told, Unharming, wall_time
 from backend.session.kept_run import KeptRun
 from backend.session.limit_watch import LimitWatch
@@ -70,6 +81,7 @@ class Session:
         self.parts, self.runs = PartCommands(self), RunCommands(self)
         self.presets = PresetCommands(database, self)
         self._kept = KeptRun(self.presets.presets, self)
+        self.history = HistoryCommands(self)
         self._commands: dict[str, tuple[type[BaseModel], Callable[[Any, str], Awaitable[Message]]]] = {
             "tune": (Changes, self.parts.tune),
             "set_reference": (Changes, self.parts.set_reference),
@@ -82,6 +94,10 @@ class Session:
             "reset": (Nothing, self.runs.reset),
             "set_pace": (Pace, self.runs.set_pace),
             "stop": (Nothing, self.runs.stop),
+            "undo": (Nothing, self.history.undo),
+            "redo": (Nothing, self.history.redo),
+            "save_point": (SavePoint, self.history.save_point),
+            "return_to": (EntryNumber, self.history.return_to),
             "save_preset": (Saving, self.presets.save),
             "apply_preset": (Applying, self.presets.apply),
             "delete_preset": (Named, self.presets.delete),
@@ -140,6 +156,7 @@ class Session:
         else:
             if last is not None:
                 self.note("scenario", f"{self.scenario.name} and its last tuning are back", "server")
+        self.history.begin()
 
     async def start_control(self) -> None:
         """Start the control process; nothing runs in it yet. Raises Problem if it ends or takes too long."""
