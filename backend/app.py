@@ -22,6 +22,8 @@ from backend.api.problems import add_problem_handlers
 from backend.api.resources import resources
 from backend.compute.pool import Pool
 from backend.processes import set_niceness
+from backend.recordings.catalogue import Catalogue
+from backend.recordings.library import Library
 from backend.recordings.recorder import Recorder
 from backend.scene.process import SceneProcess
 from backend.scene.relay import scene_routes
@@ -43,6 +45,7 @@ def create_app(settings: Settings) -> FastAPI:
     tasks = Tasks(pool.tasks)
     recorder = Recorder(settings)
     session = Session(settings, pool, database, recorder)
+    library = Library(settings, Catalogue(database), recorder, pool.recordings)
     scene = SceneProcess(session.ring_name)
     answers = tempfile.TemporaryDirectory(prefix="vssea-")
 
@@ -50,13 +53,15 @@ def create_app(settings: Settings) -> FastAPI:
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         set_niceness(WEB_NICENESS)
         session.start()
-        recorder.start(session.ring_name, session.tell, session.note_recording)
+        recorder.start(session.ring_name, session.tell, session.note_recording, library.added)
+        library.start(session.tell, session.note_recording)
         if settings.scene:
             scene.start()
         gc.collect()
         gc.freeze()  # a collection of all that was imported would stall STOP for tens of milliseconds
         yield
         await scene.stop()
+        await library.stop()
         await recorder.stop()
         await session.close()
         await tasks.stop()
@@ -82,5 +87,4 @@ def create_app(settings: Settings) -> FastAPI:
     static = Path(str(importlib.resources.files("frontend_static")))
     app.mount("/", StaticFiles(directory=static, html=True), name="page")
     app.state.session = session
-    app.state.recorder = recorder
     return app

@@ -45,6 +45,7 @@ class Library:
 
     def __init__(self, settings: Settings, catalogue: Catalogue, recorder: Recorder, jobs: Jobs) -> None:
         self.folder = settings.recordings_folder
+        self.cache = self.folder / ".overviews"
         self._quota = round(1e9 * settings.recordings_quota_gb)
         self._catalogue, self._recorder, self._jobs = catalogue, recorder, jobs
         self._summaries: dict[str, dict[str, Any]] = {}
@@ -180,7 +181,9 @@ class Library:
 
     async def _summarise(self, recording: str) -> None:
         try:
-            summary = await self._jobs.run("summarise", str(self.path_of(recording)), time_limit_s=SUMMARY_LIMIT_S)
+            summary = await self._jobs.run(
+                "summarise", str(self.path_of(recording)), str(self.cache), time_limit_s=SUMMARY_LIMIT_S
+            )
             self._summaries[recording] = summary
             await asyncio.to_thread(self._catalogue.summarised, recording, summary)
             self._summaries.pop(recording)

@@ -25,9 +25,8 @@ LONGEST_PAUSE_S = 10.0
 class Recorder:
     """A journal of the session, and the keeper of the writer. Nothing here waits for a disk."""
 
-    def __init__(self, settings: Settings, ended: Callable[[str], None] | None = None) -> None:
+    def __init__(self, settings: Settings) -> None:
         self._settings = settings
-        self._ended = ended or (lambda _: None)
         self._numbers = count(1)
         self._waiting: deque[Item] = deque(maxlen=MOST_WAITING)
         self._runs: dict[int, Begin] = {}
@@ -37,12 +36,22 @@ class Recorder:
         self._keeper: asyncio.Task[None] | None = None
         self._tell: Callable[[dict[str, Any]], None] = lambda _: None
         self._note: Callable[[str, bool], None] = lambda sentence, is_trouble: None
+        self._ended: Callable[[str], None] = lambda _: None
 
     # ---- life
 
-    def start(self, ring_name: str, tell: Callable[[dict[str, Any]], None], note: Callable[[str, bool], None]) -> None:
-        """Begin to record what the ring holds; `tell` reaches the pages, `note` the event log (a sentence, is it trouble)."""
-        self._tell, self._note = tell, note
+    def start(
+        self,
+        ring_name: str,
+        tell: Callable[[dict[str, Any]], None],
+        note: Callable[[str, bool], None],
+        ended: Callable[[str], None],
+    ) -> None:
+        """Begin to record what the ring holds.
+
+        `tell` reaches the pages, `note` the event log (a sentence, is it trouble); `ended` hears of each complete recording.
+        """
+        self._tell, self._note, self._ended = tell, note, ended
         if self._settings.recording:
             self._keeper = asyncio.create_task(self._keep(ring_name))
 
