@@ -146,7 +146,7 @@ def _mapped(heading: str, asked: dict[str, Any]) -> Column | None:
             raise ValueError(
                 f"the {name} of {heading!r} is {value!r}; expected a number that turns it into {channel}'s unit"
             )
-    return Column(heading, channel, unit, float(factor), float(offset), guessed=False)
+    return Column(heading, channel, unit, float(factor or 0.0), float(offset or 0.0), guessed=False)
 
 
 def _scaled(table: TextTable, column: Column) -> NDArray[np.float64]:

@@ -6,7 +6,6 @@ with one call. `reopen` cuts off what is torn and goes on.
 
 import fcntl
 import json
-import os
 from collections.abc import Sequence
 from itertools import groupby
 from pathlib import Path
@@ -22,6 +21,7 @@ from backend.recordings.summary_section import summary_section
 from backend.telemetry.ring import Samples
 
 LIBRARY = "vssea"
+BEGINNING = ".beginning"
 HEAD, ENDING = "recording", "ending"
 """Names of the metadata records at begin and end."""
 
@@ -51,9 +51,16 @@ class RecordingFile:
         Metadata(HEAD, head).write(builder)
         for record in declarations():
             record.write(builder)
-        file = path.open("x+b", buffering=0)
-        fcntl.flock(file, fcntl.LOCK_EX)
-        _write(file, MAGIC + builder.end())
+        beginning = path.with_name(f"{path.name}{BEGINNING}")
+        file = beginning.open("w+b", buffering=0)
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _write(file, MAGIC + builder.end())
+            beginning.rename(path)  # under its own name a file is a recording from its first byte on
+        except BaseException:
+            file.close()
+            beginning.unlink(missing_ok=True)
+            raise
         return cls(path, file, scan(path))
 
     @classmethod
@@ -101,9 +108,10 @@ class RecordingFile:
             content, place = document_chunk(list(group), self.begin_ns, self._sequences[channel], self._offset)
             self._append(content, place)
 
-    def sync(self) -> None:
-        """Let the disk have what was written, against a power cut."""
-        os.fdatasync(self._file.fileno())
+    @property
+    def descriptor(self) -> int:
+        """The open file's descriptor."""
+        return self._file.fileno()
 
     def finish(self, **ending: str) -> None:
         """Write the index at the end, with `ending` as metadata, and close."""
@@ -113,7 +121,6 @@ class RecordingFile:
         self._found.metadata_places.append((ENDING, self._offset, len(content)))
         self._append(content)
         self._append(summary_section(self._found, declarations(), self._offset))
-        self.sync()
         self.close()
 
     def close(self) -> None:

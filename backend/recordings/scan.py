@@ -58,7 +58,8 @@ def scan(path: Path) -> Scan:
                 found.metadata[record.name] = record.metadata
                 found.metadata_places.append((record.name, found.end, RECORD.size + length))
             elif opcode == Opcode.DATA_END:
-                found.is_finished = True
+                file.seek(-len(MAGIC), 2)
+                found.is_finished = file.read() == MAGIC  # else its index is torn, and is written anew
                 break
             found.end = content_at + length
         if pending is not None:

@@ -5,12 +5,11 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from backend.differences import differences as differences
+from backend.differences import value_at
 from backend.problem import FieldError, Problem, from_validation, refused
-from backend.words.changes import differences
 from vssea_core.changes import UnknownPath, set_values
 from vssea_core.scenario import Scenario
-
-__all__ = ["Changes", "after_change", "begun_with", "differences", "validated", "valued", "with_changes"]
 
 CONSEQUENCE = "Nothing was changed."
 
@@ -54,10 +53,7 @@ def after_change(scenario: Scenario, changed: dict[str, Any]) -> Scenario:
 
 def valued(scenario: Scenario, path: str) -> Any:
     """Return what stands at a dotted path of the scenario, None if nothing does."""
-    here: Any = scenario.model_dump(mode="json")
-    for name in path.split("."):
-        here = here.get(name) if isinstance(here, dict) else None
-    return here
+    return value_at(scenario.model_dump(mode="json"), path)
 
 
 def validated(document: dict[str, Any]) -> Scenario:

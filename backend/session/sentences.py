@@ -1,11 +1,13 @@
-"""What a session says in words: its state, with the reason."""
+"""What a session says in words: its state with the reason, and each change."""
 
+from typing import Any
+
+from backend.differences import change_words as change_words
 from backend.loop.messages import State
-from backend.words.changes import change_words
 from vssea_core.scenario import Scenario
 from vssea_core.signals.documents import Reference
 
-__all__ = ["change_words", "reference_words", "state_sentence"]
+MOST_WORDS = 6
 
 
 def state_sentence(state: State, reason: str | None, time_s: float, by: str | None, scenario: Scenario) -> str:
@@ -46,3 +48,22 @@ def reference_words(reference: Reference) -> str:
             return f"jogging at {reference.velocity:.2f} rad/s"
         case "recorded":
             return f"following {len(reference.times_s)} recorded samples"
+
+
+def changes_words(scenario: Scenario, part: str, pairs: dict[str, tuple[Any, Any]]) -> list[str]:
+    """Return changes of a part ("" = of the whole scenario, where another name says enough), each as words."""
+    if not part and "name" in pairs:
+        return [f"scenario {pairs['name'][0]} → {pairs['name'][1]}"]
+    prefix = f"{part}." if part else ""
+    return [change_words(scenario, f"{prefix}{path}", *pair) for path, pair in pairs.items()]
+
+
+def several(words: list[str]) -> str:
+    """Return some words in one line, the first of them if they are many."""
+    more = len(words) - MOST_WORDS
+    return ", ".join(words[:MOST_WORDS]) + (f" and {more} more" if more > 0 else "") or "no change in the end"
+
+
+def whose(made_by: str, by: str) -> str:
+    """Return whose change it was, if it was another's than that of `by`."""
+    return "" if made_by == by else f" the change of {made_by}"

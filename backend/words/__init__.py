@@ -1,1 +1,0 @@
-"""Changes of the scenario in words, for everybody who tells of them."""
