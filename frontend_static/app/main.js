@@ -11,6 +11,7 @@ import { LastEvent } from "./foot/last_event.js";
 import { Metrics } from "./foot/metrics.js";
 import { ParameterList } from "./parameters/parameter_list.js";
 import { CHARTS, channelsOf } from "./plots/chart_list.js";
+import { LiveSource } from "./plots/live_source.js";
 import { PlotStack } from "./plots/plot_stack.js";
 import { PlotToolbar } from "./plots/plot_toolbar.js";
 import { PlotsOverlay } from "./plots/plots_overlay.js";
@@ -37,7 +38,7 @@ const stop = new StopButton(session);
 const run = new RunControls(session, new ResetDialog());
 const keysDialog = new KeysDialog();
 const edits = new Edits(session);
-const stack = new PlotStack(document.getElementById("charts"), session, theme);
+const stack = new PlotStack(document.getElementById("charts"), new LiveSource(session), theme);
 const toolbar = new PlotToolbar(document.getElementById("plot-toolbar"), stack);
 let parameters = null;
 
