@@ -15,6 +15,7 @@ import { LiveSource } from "./plots/live_source.js";
 import { PlotStack } from "./plots/plot_stack.js";
 import { PlotToolbar } from "./plots/plot_toolbar.js";
 import { PlotsOverlay } from "./plots/plots_overlay.js";
+import { RecordingsView } from "./recordings/recordings_view.js";
 import { Scene } from "./scene.js";
 import { LiveSession } from "./session/live_session.js";
 import { rest } from "./session/rest.js";
@@ -54,17 +55,20 @@ new EventLog(session);
 new StabilityColumn(document.getElementById("stability"), session);
 new AnalyseView(document.getElementById("view-analyse"), { session, theme, views });
 
+const recordings = new RecordingsView(document.getElementById("view-recordings"), { session, theme, views });
+
 bindKeys({
   stop: () => stop.press(),
-  pauseOrResume: () => run.pauseOrResume(),
-  step: () => run.step(),
+  pauseOrResume: () => recordings.takeSpace() || run.pauseOrResume(),
+  step: () => (recordings.isOpen ? recordings.page.step() : run.step()),
   freeze: () => toolbar.toggleFreeze(),
-  cursors: () => stack.cursors.toggle(),
+  cursors: () => (recordings.isOpen ? recordings.page.stack : stack).cursors.toggle(),
   undo: () => edits.undo(),
   redo: () => edits.redo(),
   savePreset: () => parameters?.presets.save(),
   viewTune: () => views.show("tune"),
   viewAnalyse: () => views.show("analyse"),
+  viewRecordings: () => views.show("recordings"),
   showKeys: () => keysDialog.show(),
 });
 

@@ -94,7 +94,7 @@ export class Chart {
         at < 0 ? NaN : picture.column(series.channel)[at],
         this.ranges[series.side],
         cursors.difference(series.channel),
-        at < 0 || series.isFaint ? [] : this.overlays.values(series.channel, picture.time[at]),
+        at < 0 ? [] : this.overlays.values(series, picture.time[at]),
       );
       if (series.onlyWhenUnlike) item.root.hidden = !this.#unlike.has(series.channel);
     }

@@ -57,7 +57,7 @@ class LegendItem {
     this.delta.hidden = Number.isNaN(difference);
     setText(this.delta, Number.isNaN(difference) ? "" : `Δ ${fixed(difference * factor, decimals)}`);
     this.others.hidden = !others.length;
-    const words = others.map((other) => `${other.overlay.label} ${fixed(other.value * factor, decimals)}`);
+    const words = others.map((other) => `${other.overlay.label}: ${fixed(other.value * factor, decimals)}`);
     setText(this.others, words.join("  "));
   }
 

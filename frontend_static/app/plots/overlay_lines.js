@@ -13,7 +13,7 @@ export class OverlayLines {
 
   /** @param {object[]} series of the chart, as in chart_list.js */
   constructor(series) {
-    this.series = series.filter(({ isFaint }) => !isFaint);
+    this.series = series.filter(({ isFaint, isAlone }) => !isFaint && !isAlone);
   }
 
   /** Take the samples of the overlays for a span. @param {object[]} overlays @param {[number, number]} range s @param {number} pixels */
@@ -34,8 +34,10 @@ export class OverlayLines {
     return this.#shown.flatMap(({ overlay }) => series.map(({ channel }) => this.#envelope(overlay, channel)));
   }
 
-  /** @returns {{overlay: object, value: number}[]} a channel's values of all overlays at a time of the chart */
-  values(channel, time) {
+  /** @returns {{overlay: object, value: number}[]} a series' values of all overlays at a time of the chart */
+  values(series, time) {
+    const { channel, dash } = series;
+    if (dash || !this.series.includes(series)) return [];
     return this.#shown.map(({ overlay, picture }) => {
       const own = time - overlay.shift;
       const isInside = picture.time.length > 0 && own >= picture.time[0] && own <= picture.time.at(-1);
