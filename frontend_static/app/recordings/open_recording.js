@@ -58,6 +58,7 @@ export class OpenRecording {
     this.spectra = new Spectra(this, this.stack.palette, theme);
     this.spectraButton = element("button", { type: "button", class: "tool", "aria-pressed": "false", title: "Spectra of the shown span", click: () => this.#toggleSpectra() }, "Spectra");
     this.toolbarArea.insertBefore(this.spectraButton, this.toolbar.readout);
+    this.toolbarArea.append(this.spectra.readout);
     this.side = element(
       "div",
       { class: "recording-side", tabindex: "0", role: "group", "aria-label": "Compare and use" },

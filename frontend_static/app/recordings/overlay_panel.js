@@ -16,7 +16,7 @@ export class OverlayPanel {
     this.comparison = comparison;
     this.add = element("select", {
       "aria-label": "Lay another recording over this one",
-      focus: () => this.offer(),
+      pointerenter: () => this.offer(),
       change: () => this.#add(),
     });
     this.align = element("select", { "aria-label": "Align at", change: () => comparison.align(this.align.value) });
@@ -49,6 +49,9 @@ export class OverlayPanel {
   #fill(recordings) {
     const { facts } = this.comparison;
     const others = recordings.filter(({ id }) => id !== facts?.id);
+    const ids = others.map(({ id }) => id).join();
+    if (ids === this.offered) return;
+    this.offered = ids;
     this.add.replaceChildren(
       new Option("Lay over this…", ""),
       new Option("live: what runs now", LIVE),
@@ -68,9 +71,11 @@ export class OverlayPanel {
   #show() {
     const { overlays, facts, anchor } = this.comparison;
     this.alignRow.hidden = overlays.length === 0;
-    const shown = this.anchorsOf === facts ? null : facts;
-    if (shown) this.align.replaceChildren(...anchorChoices(facts).map(({ value, text }) => new Option(text, value)));
-    this.anchorsOf = facts;
+    if (facts && this.shown !== facts) {
+      this.align.replaceChildren(...anchorChoices(facts).map(({ value, text }) => new Option(text, value)));
+      this.offer();
+    }
+    this.shown = facts;
     this.align.value = anchor;
     for (const overlay of overlays) {
       if (!this.#lines.has(overlay.key)) this.#lines.set(overlay.key, new OverlayLine(this.comparison, overlay.key));

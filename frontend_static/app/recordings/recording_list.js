@@ -55,7 +55,7 @@ export class RecordingList {
     this.root = element(
       "div",
       { class: "recording-list" },
-      element("div", { class: "list-head", role: "search" }, this.search, this.starred, this.origin, this.compare, element("button", { type: "button", click: () => this.importing.choose() }, "Import CSV…"), this.recorder, element("span", { class: "disk" }, this.disk, this.meter)),
+      element("div", { class: "recordings-head", role: "search" }, this.search, this.starred, this.origin, this.compare, element("button", { type: "button", click: () => this.importing.choose() }, "Import CSV…"), this.recorder, element("span", { class: "disk" }, this.disk, this.meter)),
       this.problem,
       element("div", { class: "list-scroll", tabindex: "-1" }, this.table, this.empty, this.more),
     );

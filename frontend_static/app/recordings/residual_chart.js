@@ -22,7 +22,7 @@ export function residualChart(channels) {
     id: "residual",
     name: "Residual: recording less simulation",
     left: { unit: "mrad", factor: 1e3, smallest: 1e-5 },
-    right: { unit: "N·m", smallest: 1e-3 },
+    right: { unit: "N·m", smallest: 0.02 },
     series,
   };
 }

@@ -32,13 +32,13 @@ export class Spectra {
     this.palette = palette;
     this.chosen = new Set(CHOSEN_FIRST);
     this.chips = CHANNELS.map(({ channel, label, colour }) => this.#chip(channel, label, colour));
-    this.readout = element("output", { class: "readout" });
+    this.readout = element("output", { class: "spectra-readout", hidden: true });
     this.problem = element("p", { class: "form-problem", role: "status", hidden: true });
     this.area = element("div", { class: "spectra-charts" });
     this.root = element(
       "div",
       { class: "spectra", hidden: true },
-      element("div", { class: "spectra-head" }, element("div", { class: "chips", role: "group", "aria-label": "Channels" }, ...this.chips), this.readout),
+      element("div", { class: "chips", role: "group", "aria-label": "Channels" }, ...this.chips),
       this.problem,
       this.area,
     );
@@ -47,7 +47,7 @@ export class Spectra {
   }
 
   set isShown(isShown) {
-    this.root.hidden = !isShown;
+    this.root.hidden = this.readout.hidden = !isShown;
     if (isShown) this.look();
   }
 
@@ -103,25 +103,26 @@ export class Spectra {
   #draw(channels, answers, runs) {
     for (const { channel, label } of channels) {
       if (this.#charts.has(channel)) continue;
-      const layout = { name: label, unit: "", xUnit: "Hz", lowest: 0.1, clip: [1e-12, 1e6] };
+      const { unit } = displayUnit(this.source.channels.get(channel)?.unit ?? "");
+      const layout = { name: label, unit: `${unit}/√Hz`, xUnit: "Hz", lowest: 0.1, clip: [1e-12, 1e6] };
       this.#charts.set(channel, new FrequencyChart(layout, this.palette, (at) => this.#point(at)));
     }
     const roots = channels.map(({ channel }) => this.#charts.get(channel).root);
     this.area.dataset.count = roots.length;
     this.area.replaceChildren(...roots);
-    for (const { channel, label, colour } of channels) {
+    for (const { channel, colour } of channels) {
       const chart = this.#charts.get(channel);
       const { factor, unit } = displayUnit(this.source.channels.get(channel)?.unit ?? "");
       const curves = answers.flatMap((answer, i) => {
         const density = answer?.density[channel];
         if (!density) return [];
-        const name = i === 0 ? `${unit}/√Hz` : `${runs[i].label}:`;
+        const name = i === 0 ? "" : `${runs[i].label}: `;
         const rms = `RMS ${significant(answer.rms[channel] * factor)} ${unit}`;
         const amplitudes = density.map((value) => (value > 0 ? Math.sqrt(value) * factor : NaN));
-        return [{ label: `${name} ${rms}`, colour: `series-${colour}`, dash: runs[i].dash, alpha: runs[i].alpha, x: answer.frequencies_hz, y: amplitudes }];
+        return [{ label: name + rms, colour: `series-${colour}`, dash: runs[i].dash, alpha: runs[i].alpha, x: answer.frequencies_hz, y: amplitudes }];
       });
       const most = Math.max(...curves.flatMap(({ y }) => y.filter(Number.isFinite)));
-      Object.assign(chart.layout, { name: label, clip: [most * 10 ** -DECADES, most * 2], lowest: curves[0]?.x.find((at) => at > 0) ?? 0.1 });
+      Object.assign(chart.layout, { clip: [most * 10 ** -DECADES, most * 2], lowest: curves[0]?.x.find((at) => at > 0) ?? 0.1 });
       chart.show(curves);
     }
     this.#point(null);

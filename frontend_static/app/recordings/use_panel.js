@@ -21,8 +21,8 @@ export class UsePanel {
       "section",
       { class: "side-panel", "aria-label": "In the live session" },
       element("h2", {}, "In the live session"),
-      element("div", { class: "form-row" }, this.channel, this.reference),
-      element("div", { class: "form-row" }, this.scenario),
+      element("div", { class: "form-row" }, element("span", { class: "form-name" }, "motion"), this.channel),
+      element("div", { class: "form-row" }, this.reference, this.scenario),
       this.words,
     );
   }
