@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from backend.compute.analysis_jobs import analyse_loop, analysis_task, margins_of
+from backend.compute.calibration_job import calibrate
 from backend.compute.report_jobs import paper_task
 from backend.telemetry.frames import frames
 from backend.telemetry.ring import COLUMNS, EPOCH, PERIOD_S, WIDTH, Piece
@@ -29,6 +30,7 @@ __all__ = [
     "LONG",
     "analyse_loop",
     "analysis_task",
+    "calibrate",
     "margins_of",
     "paper_task",
     "plan_run",

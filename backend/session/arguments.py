@@ -4,9 +4,8 @@ from typing import Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from backend.presets.contents import Note, PresetName, Tags
 from vssea_core.scenario import Scenario
-
-PresetName = Field(min_length=1, max_length=80, pattern=r"^[^/\\\x00-\x1f]+$", description="Name of a preset.")
 
 
 class Arguments(BaseModel):
@@ -22,7 +21,22 @@ class Nothing(Arguments):
 class Named(Arguments):
     """A preset's name."""
 
-    name: str = PresetName
+    name: PresetName
+
+
+class Saving(Named):
+    """What to save the tuning in force as; `revision` is that of the preset as it is known."""
+
+    note: Note = ""
+    tags: Tags | None = None
+    revision: int | None = Field(None, ge=1, strict=True, description="Needed where there is a preset of this name.")
+
+
+class Applying(Named):
+    """Which version of a preset to use, and which paths of the tuning; without them the newest, and all that differs."""
+
+    version: int | None = Field(None, ge=1, strict=True)
+    paths: list[str] | None = Field(None, max_length=64)
 
 
 class Samples(Arguments):
@@ -35,6 +49,18 @@ class Pace(Arguments):
     """How fast time runs."""
 
     factor: float = Field(ge=0.05, le=4.0, strict=True, description="Real-time factor asked.")
+
+
+class SavePoint(Arguments):
+    """What to call a save point."""
+
+    name: str | None = Field(None, min_length=1, max_length=80, description="Its name; without one it gets its time.")
+
+
+class EntryNumber(Arguments):
+    """An entry of the history."""
+
+    number: int = Field(ge=1, strict=True, description="Number of the entry.")
 
 
 class Loading(Arguments):

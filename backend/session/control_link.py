@@ -16,7 +16,10 @@ LEAVE_LIMIT_S = 3.0
 
 
 class ControlLink:
-    """Sends commands and awaits what became of them; reports of the state go to `listener`, its end to `lost`."""
+    """Sends commands and awaits what became of them; reports of the state go to `listener`, its end to `lost`.
+
+    Who awaits a command goes on before the reports that came after its answer are told.
+    """
 
     def __init__(self, listener: Callable[[Report], None], lost: Callable[[], None]) -> None:
         self._listener, self._lost = listener, lost
@@ -85,7 +88,7 @@ class ControlLink:
                 if future is not None and not future.done():
                     future.set_exception(_silent())
             if self._process is not None:
-                self._lost()
+                asyncio.get_running_loop().call_soon(self._lost)
 
     def _take(self, report: Report) -> None:
         if isinstance(report, Ready):
@@ -100,7 +103,7 @@ class ControlLink:
             else:
                 future.set_exception(refused(f"{report.sentence[:1].upper()}{report.sentence[1:]}."))
             return
-        self._listener(report)
+        asyncio.get_running_loop().call_soon(self._listener, report)
 
     def _close(self) -> None:
         if not self._pipe.closed:

@@ -18,6 +18,7 @@ Kind = Literal[
     "scenario",
     "sequence",
     "link",
+    "recording",
 ]
 Severity = Literal["info", "warning", "fault"]
 KEPT = 500

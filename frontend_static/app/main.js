@@ -9,6 +9,8 @@ import { ParameterSchema } from "./document/parameter_schema.js";
 import { EventLog } from "./foot/event_log.js";
 import { LastEvent } from "./foot/last_event.js";
 import { Metrics } from "./foot/metrics.js";
+import { ChangeHistory } from "./history/change_history.js";
+import { HistoryPanel } from "./history/history_panel.js";
 import { ParameterList } from "./parameters/parameter_list.js";
 import { CHARTS, channelsOf } from "./plots/chart_list.js";
 import { LiveSource } from "./plots/live_source.js";
@@ -19,6 +21,7 @@ import { RecordingsView } from "./recordings/recordings_view.js";
 import { Scene } from "./scene.js";
 import { LiveSession } from "./session/live_session.js";
 import { rest } from "./session/rest.js";
+import { SideTabs } from "./side/side_tabs.js";
 import { StabilityColumn } from "./stability/stability_column.js";
 import { Theme } from "./theme.js";
 import { KeysDialog } from "./topbar/keys_dialog.js";
@@ -39,6 +42,7 @@ const stop = new StopButton(session);
 const run = new RunControls(session, new ResetDialog());
 const keysDialog = new KeysDialog();
 const edits = new Edits(session);
+const history = new ChangeHistory(session);
 const stack = new PlotStack(document.getElementById("charts"), new LiveSource(session), theme);
 const toolbar = new PlotToolbar(document.getElementById("plot-toolbar"), stack);
 let parameters = null;
@@ -52,7 +56,11 @@ new PlotsOverlay(document.getElementById("plots-overlay"), session);
 new LastEvent(session);
 new Metrics(session);
 new EventLog(session);
-new StabilityColumn(document.getElementById("stability"), session);
+const margins = new StabilityColumn(document.getElementById("stability"), session);
+new SideTabs(document.getElementById("stability"), [
+  { id: "margins", title: "Margins", body: margins.body },
+  { id: "history", title: "History", body: new HistoryPanel(history).root },
+]);
 new AnalyseView(document.getElementById("view-analyse"), { session, theme, views });
 
 const recordings = new RecordingsView(document.getElementById("view-recordings"), { session, theme, views });
@@ -63,8 +71,8 @@ bindKeys({
   step: () => (recordings.isOpen ? recordings.page.step() : run.step()),
   freeze: () => toolbar.toggleFreeze(),
   cursors: () => (recordings.isOpen ? recordings.page.stack : stack).cursors.toggle(),
-  undo: () => edits.undo(),
-  redo: () => edits.redo(),
+  undo: () => history.undo(),
+  redo: () => history.redo(),
   savePreset: () => parameters?.presets.save(),
   viewTune: () => views.show("tune"),
   viewAnalyse: () => views.show("analyse"),

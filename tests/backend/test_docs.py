@@ -64,7 +64,7 @@ def test_every_route_is_in_the_protocol(http: httpx.Client) -> None:
     assert listed == served
 
 
-@pytest.mark.parametrize("name", ["hello", "state", "document", "event", "margins", "missed", "reply"])
+@pytest.mark.parametrize("name", ["hello", "state", "document", "event", "margins", "history", "missed", "reply"])
 def test_every_message_is_in_the_protocol(name: str) -> None:
     assert f'{{"type": "{name}"' in PROTOCOL
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import httpx
 import numpy as np
 import pytest
-
 from backend.presets.store import PresetStore
+
 from backend.problem import Problem
 from tests.backend.server import Server
 from vssea_core.control.tuning import StateFeedback, Tuning

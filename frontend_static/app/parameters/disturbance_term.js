@@ -70,7 +70,7 @@ export class DisturbanceTerm {
         const then = baseline.value(list.part);
         return then && inList(then, placeThen(then));
       },
-      write: (value, gesture) => list.replace((terms) => this.#with(terms, name, value), gesture),
+      write: (value) => list.replace((terms) => this.#with(terms, name, value)),
     };
   }
 

@@ -4,7 +4,6 @@ import { ParameterRow } from "./parameter_row.js";
 import { SliderScale } from "./slider_scale.js";
 import { SliderStream } from "./slider_stream.js";
 
-const STEP_GESTURE_MS = 1000;
 const LONG_UNIT = 7;
 const NOTHING = "none";
 
@@ -12,8 +11,6 @@ const NOTHING = "none";
 export class NumberRow extends ParameterRow {
   #isDragging = false;
   #isTyping = false;
-  #gesture = Symbol("gesture");
-  #steppedAt = -Infinity;
 
   constructor(field, place, hint) {
     const label = `${field.title}${field.unit ? `, ${field.unit}` : ""}`;
@@ -44,7 +41,7 @@ export class NumberRow extends ParameterRow {
     this.slider = slider;
     this.box = box;
     this.scale = new SliderScale(field);
-    this.stream = new SliderStream((value) => this.send(value, this.#gesture).finally(() => this.settle()));
+    this.stream = new SliderStream((value) => this.send(value).finally(() => this.settle()));
     this.#listenToSlider();
     this.#listenToBox();
   }
@@ -75,10 +72,7 @@ export class NumberRow extends ParameterRow {
 
   #listenToSlider() {
     const { slider } = this;
-    slider.addEventListener("pointerdown", () => {
-      this.#isDragging = true;
-      this.#gesture = Symbol("drag");
-    });
+    slider.addEventListener("pointerdown", () => (this.#isDragging = true));
     slider.addEventListener("input", () => {
       const value = this.scale.value(Number(slider.value));
       slider.style.setProperty("--share", slider.value / SliderScale.positions);
@@ -116,9 +110,6 @@ export class NumberRow extends ParameterRow {
   #stepByKey(event, keys = ["ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight"]) {
     if (!keys.includes(event.key)) return;
     event.preventDefault();
-    const now = performance.now();
-    if (now - this.#steppedAt > STEP_GESTURE_MS) this.#gesture = Symbol("steps");
-    this.#steppedAt = now;
     const direction = event.key === "ArrowUp" || event.key === "ArrowRight" ? 1 : -1;
     const size = event.shiftKey ? 10 : event.altKey ? 0.1 : 1;
     const from = readNumber(this.box.value);
@@ -143,7 +134,7 @@ export class NumberRow extends ParameterRow {
       this.show(this.echoed);
       this.say(`“${typed.trim()}” is not a number; kept ${this.words(this.echoed)}`, "refused");
     } else if (Object.is(value, this.echoed)) this.show(value);
-    else if (!(await this.send(value, Symbol("typed"))) && this.root.contains(document.activeElement)) {
+    else if (!(await this.send(value)) && this.root.contains(document.activeElement)) {
       this.box.setAttribute("aria-invalid", "true");
     }
   }

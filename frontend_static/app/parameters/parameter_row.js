@@ -8,7 +8,7 @@ const NOTE_MS = 6000;
  * What all parameter rows share: the name with its dot, the place for a note, the echo that waits while the row has
  * focus. Subclasses give `show(value)` and `isBusy`.
  *
- * A row's `place` says where its value lives: {path, short?, read(), write(value, gesture) -> Promise<result>, baseline()}.
+ * A row's `place` says where its value lives: {path, short?, read(), write(value) -> Promise<result>, baseline()}.
  * With `restarts`, a value is sent only when the hand leaves it: each one starts the run again.
  */
 export class ParameterRow {
@@ -54,11 +54,11 @@ export class ParameterRow {
   }
 
   /** Send a value; the row then shows what the server made of it. */
-  async send(value, gesture) {
+  async send(value) {
     this.#pending += 1;
     this.root.classList.add("is-pending");
     try {
-      await this.place.write(value, gesture);
+      await this.place.write(value);
       this.say("");
       return true;
     } catch (refusal) {

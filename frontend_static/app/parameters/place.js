@@ -18,12 +18,12 @@ export function placeIn({ document, edits, baseline }, part, name, kind, beside)
     restarts: !isLive,
     read: () => (isOther((path) => document.value(path)) ? undefined : both((path) => document.value(path))),
     baseline: () => (isOther((path) => baseline.value(path)) ? undefined : both((path) => baseline.value(path))),
-    write: (value, gesture) => {
+    write: (value) => {
       if (!isLive) return edits.restart({ [inPart(name)]: value });
       const changes = beside
         ? { [relative(name)]: value[0], [relative(beside)]: value[1] }
         : { [relative(name)]: value };
-      return edits.change(section, changes, gesture);
+      return edits.change(section, changes);
     },
   };
 }

@@ -54,11 +54,8 @@ export class PresetPanel {
   }
 
   async #apply() {
-    const before = structuredClone(this.desk.document.value("tuning"));
-    const preset = this.#presets.find(({ name }) => name === this.select.value);
     if (!(await this.#command("apply_preset", { name: this.select.value }))) return;
     this.name.value = this.select.value;
-    if (preset?.tuning) this.desk.edits.remember("tuning", before, preset.tuning);
   }
 
   #delete() {

@@ -47,7 +47,6 @@ export class ScenarioPanel {
   async #load() {
     try {
       await this.desk.session.command("load_scenario", { name: this.select.value });
-      this.desk.edits.forget();
     } catch (refusal) {
       this.desk.session.note(refusal.message);
       this.echo();

@@ -42,10 +42,10 @@ export class TermList {
   }
 
   /** Change the list of this side. @param {(terms: object[]) => object[]} change gets a copy */
-  replace(change, gesture) {
+  replace(change) {
     const all = structuredClone(this.desk.document.value(this.layout.part));
     all[this.side] = change(all[this.side]);
-    return this.desk.edits.replace(this.layout.part, all, gesture);
+    return this.desk.edits.replace(this.layout.part, all);
   }
 
   /** A new term of a kind, of a size that suits this side; what unfolds from its start starts now. */

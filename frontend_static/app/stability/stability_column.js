@@ -8,7 +8,7 @@ import { TruePlantPanel } from "./true_plant_panel.js";
 
 /**
  * Margins beside the tuning, as the server computes them after each change. Until the answer to the newest change has come,
- * the old figures stay where they are, a little dimmer.
+ * the old figures stay where they are, a little dimmer. The sentence stands in `root`; `body` is for the caller to place.
  */
 export class StabilityColumn {
   constructor(root, session) {
@@ -17,10 +17,10 @@ export class StabilityColumn {
     this.panels = [new MarginPanel(), new TruePlantPanel(), new PolePanel(session.document), new MeaningPanel()];
     this.body = element(
       "div",
-      { id: "stability-body", tabindex: "0", "aria-label": "Margins", role: "group" },
+      { id: "stability-body" },
       ...this.panels.map((panel) => panel.root),
     );
-    root.append(this.head.root, this.body);
+    root.append(this.head.root);
     session.addEventListener("margins", () => this.#show());
     session.document.addEventListener("change", () => this.#age());
     this.#show();

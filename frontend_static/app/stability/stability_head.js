@@ -17,7 +17,7 @@ export class StabilityHead {
       {
         type: "button",
         id: "stability-handle",
-        "aria-controls": "stability-body",
+        "aria-controls": "side",
         "aria-expanded": "false",
         click: () => this.#toggle(column),
       },
