@@ -11,20 +11,25 @@ from fastapi import FastAPI
 from starlette.middleware import Middleware
 from starlette.staticfiles import StaticFiles
 
+from backend.api.actuators import actuator_routes
 from backend.api.analysis import analysis
 from backend.api.documentation import documentation
 from backend.api.export import export
 from backend.api.guard import Guard
 from backend.api.live import live
+from backend.api.presets import preset_routes
 from backend.api.problems import add_problem_handlers
 from backend.api.resources import resources
 from backend.compute.pool import Pool
-from backend.presets.store import PresetStore
 from backend.processes import set_niceness
+from backend.recordings.catalogue import Catalogue
+from backend.recordings.library import Library
+from backend.recordings.recorder import Recorder
 from backend.scene.process import SceneProcess
 from backend.scene.relay import scene_routes
 from backend.session.session import Session
 from backend.settings import Settings
+from backend.store.database import Database
 from backend.tasks.tasks import Tasks
 from vssea_core import __version__
 
@@ -34,10 +39,13 @@ WEB_NICENESS = -10
 
 def create_app(settings: Settings) -> FastAPI:
     """Return the whole application; its processes start and end with it."""
-    store = PresetStore(settings.data_dir)
+    settings.data_dir.mkdir(parents=True, exist_ok=True)
+    database = Database(settings.database_url)
     pool = Pool()
     tasks = Tasks(pool.tasks)
-    session = Session(settings, pool, store)
+    recorder = Recorder(settings)
+    session = Session(settings, pool, database, recorder)
+    library = Library(settings, Catalogue(database), recorder, pool.recordings)
     scene = SceneProcess(session.ring_name)
     answers = tempfile.TemporaryDirectory(prefix="vssea-")
 
@@ -45,16 +53,20 @@ def create_app(settings: Settings) -> FastAPI:
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         set_niceness(WEB_NICENESS)
         session.start()
+        recorder.start(session.ring_name, session.tell, session.note_recording, library.added)
+        library.start(session.tell, session.note_recording)
         if settings.scene:
             scene.start()
         gc.collect()
         gc.freeze()  # a collection of all that was imported would stall STOP for tens of milliseconds
         yield
         await scene.stop()
+        await library.stop()
+        await recorder.stop()
         await session.close()
         await tasks.stop()
         await pool.stop()
-        store.close()
+        database.close()
         answers.cleanup()
 
     app = FastAPI(
@@ -63,10 +75,12 @@ def create_app(settings: Settings) -> FastAPI:
         middleware=[Middleware(Guard, settings=settings)],
     )  # fmt: skip
     add_problem_handlers(app)
-    app.include_router(resources(session, pool, store, answers.name))
+    app.include_router(resources(session, pool, answers.name))
+    app.include_router(preset_routes(session))
+    app.include_router(actuator_routes(session, pool))
     app.include_router(analysis(session, pool, tasks, answers.name))
     app.include_router(export(session, pool))
-    app.include_router(live(session))
+    app.include_router(live(session, recorder))
     app.include_router(documentation())
     # The guard has checked Host and Origin of every websocket before this.
     app.router.routes.extend(scene_routes(lambda: scene.port, lambda _: True, lambda: scene.sentence))

@@ -26,6 +26,8 @@ class Problem(Exception):
     title: str
     detail: str
     errors: list[FieldError] = field(default_factory=list)
+    members: dict[str, Any] = field(default_factory=dict)
+    """What this kind of problem has beyond the members that all have."""
 
     def document(self) -> dict[str, Any]:
         """Return it as a problem details document."""
@@ -35,6 +37,7 @@ class Problem(Exception):
             "status": self.status,
             "detail": self.detail,
             "errors": [{"field": e.field, "value": _printable(e.value), "message": e.message} for e in self.errors],
+            **self.members,
         }
 
 

@@ -8,6 +8,7 @@ from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from vssea_core.scenarios import SCENARIOS
 
+DATABASES = ("sqlite:///", "postgresql://", "postgresql+psycopg://")
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
 
@@ -22,10 +23,26 @@ class Settings(BaseSettings):
     allowed_hosts: tuple[str, ...] = Field((), description="Further names this server may be called by (Host header).")
     data_dir: Path = Field(
         Path(platformdirs.user_data_dir("vssea")),
-        description="Where presets, the last tuning and fault snapshots are kept.",
+        description="Where the database, recordings and fault snapshots are kept.",
+    )
+    database: str | None = Field(
+        None,
+        description="Where presets, actuators and the catalogue of recordings are kept: a SQLite or PostgreSQL URL.",
     )
     scenario: str = Field("nominal", description="Scenario of the live session at the first start.")
     scene: bool = Field(True, description="Whether the 3D scene runs.")
+
+    recording: bool = Field(True, description="Whether the live session is recorded.")
+    recordings_dir: Path | None = Field(
+        None, description="Where recordings are kept; `recordings` in the data folder if unset."
+    )
+    recordings_quota_gb: float = Field(
+        10.0, gt=0.0, description="Most that recordings take; the oldest go first, starred ones never."
+    )
+    recordings_keep_free_gb: float = Field(
+        0.5, ge=0.0, description="Recording stops when the disk has less than this left."
+    )
+    recording_part_minutes: float = Field(60.0, gt=0.0, description="A longer run is recorded in parts of this length.")
 
     @field_validator("scenario")
     @classmethod
@@ -33,6 +50,16 @@ class Settings(BaseSettings):
         if name not in SCENARIOS:
             raise ValueError(f"{name!r} is not a ready scenario; expected one of {', '.join(SCENARIOS)}")
         return name
+
+    @field_validator("database")
+    @classmethod
+    def _known_database(cls, url: str | None) -> str | None:
+        if url is not None and not url.startswith(DATABASES):
+            # The value is not repeated: it may hold a password.
+            raise ValueError(
+                "is no address of a database; expected sqlite:////folder/file.sqlite or postgresql://user:password@host/name"
+            )
+        return url
 
     @model_validator(mode="after")
     def _token_beyond_loopback(self) -> "Settings":
@@ -42,6 +69,16 @@ class Settings(BaseSettings):
                 "set VSSEA_TOKEN to at least 16 characters, or listen on 127.0.0.1"
             )
         return self
+
+    @property
+    def recordings_folder(self) -> Path:
+        """Folder of the recordings."""
+        return self.recordings_dir or self.data_dir / "recordings"
+
+    @property
+    def database_url(self) -> str:
+        """Address of the database: a file in the data folder unless another one is named."""
+        return self.database or f"sqlite:///{self.data_dir / 'vssea.sqlite'}"
 
     @property
     def hosts(self) -> frozenset[str]:

@@ -14,6 +14,8 @@ BENCHMARKS = {
     "export": ("benchmarks.export", "one tick of the exported C controller, beside the compiled tick"),
     "start": ("benchmarks.start", "from starting the server to something moving on the page"),
     "latency": ("benchmarks.latency", "slider to changed torque, STOP to zero torque"),
+    "kills": ("benchmarks.kills", "SIGKILLs of the recording process: unreadable files, tail lost"),
+    "hour": ("benchmarks.hour", "one hour of recording: size, memory, samples lost, time"),
     "loop": ("benchmarks.loop", "the 1 kHz loop for two minutes: lateness, overruns, lost samples, processor time"),
 }
 

@@ -12,6 +12,7 @@ from fastapi import APIRouter, WebSocket
 from starlette.websockets import WebSocketDisconnect
 
 from backend.problem import UNEXPECTED, Problem
+from backend.recordings.recorder import Recorder
 from backend.session.session import Session
 from backend.telemetry.frames import frames
 from vssea_core import __version__
@@ -34,8 +35,8 @@ PROTOCOL_ERROR, TRY_AGAIN = 1002, 1013
 class Page:
     """One connected page."""
 
-    def __init__(self, socket: WebSocket, session: Session, name: str) -> None:
-        self._socket, self._session, self.name = socket, session, name
+    def __init__(self, socket: WebSocket, session: Session, recorder: Recorder, name: str) -> None:
+        self._socket, self._session, self._recorder, self.name = socket, session, recorder, name
         self._messages: deque[dict[str, Any]] = deque(maxlen=QUEUED_MESSAGES)
         self._news = asyncio.Event()
         self._commands: set[asyncio.Task[None]] = set()
@@ -43,7 +44,7 @@ class Page:
 
     def post(self, message: dict[str, Any]) -> None:
         """Queue a message; of states, documents and margins only the newest is kept."""
-        if message["type"] in ("state", "document", "margins"):
+        if message["type"] in ("state", "document", "margins", "recorder"):
             for queued in self._messages:
                 if queued["type"] == message["type"]:
                     self._messages.remove(queued)
@@ -73,7 +74,8 @@ class Page:
             "type": "hello", "protocol": 1, "run": session.run_id, "you": self.name, "version": __version__,
             "channels": [channel._asdict() for channel in CHANNELS], "snapshot": session.snapshot(),
             "document": session.document(), "events": session.log.last(100), "margins": session.margins.newest,
-            **session.history.greeting(), "pins": session.pins.message()["pins"], "trigger": session.trigger.message(),
+            "recorder": self._recorder.document(), **session.history.greeting(),
+            "pins": session.pins.message()["pins"], "trigger": session.trigger.message(),
         }  # fmt: skip
         with suppress(WebSocketDisconnect, RuntimeError, TimeoutError):
             await self._send(json.dumps(hello))
@@ -177,7 +179,7 @@ def ring_burst(period_s: float) -> int:
     return max(10_000, round(FAR_BEHIND_S / period_s))
 
 
-def live(session: Session) -> APIRouter:
+def live(session: Session, recorder: Recorder) -> APIRouter:
     """Return the websocket route."""
     router = APIRouter()
     numbers = count(1)
@@ -189,7 +191,7 @@ def live(session: Session) -> APIRouter:
             await socket.close(PROTOCOL_ERROR, f"Expected the subprotocol {SUBPROTOCOL}.")
             return
         history_s = _seconds(socket.query_params.get("history_s"))
-        page = Page(socket, session, f"page {next(numbers)}")
+        page = Page(socket, session, recorder, f"page {next(numbers)}")
         await socket.accept(SUBPROTOCOL if offered else None)
         await page.serve(history_s)
 

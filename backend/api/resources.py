@@ -1,4 +1,4 @@
-"""Schema, scenarios, simulations, presets and the session's commands over REST."""
+"""Schema, scenarios, simulations and the session's commands over REST."""
 
 import json
 from pathlib import Path
@@ -10,13 +10,10 @@ from pydantic import ValidationError
 from starlette.background import BackgroundTask
 
 from backend.compute.pool import JobFailedError, JobRefusedError, Pool
-from backend.presets.store import PresetStore
 from backend.problem import Problem, from_validation, refused
-from backend.session.arguments import Named
 from backend.session.session import Session
 from vssea_core import __version__
 from vssea_core.channels import CHANNELS, LIMITS
-from vssea_core.control.tuning import Tuning
 from vssea_core.scenario import Scenario
 from vssea_core.scenarios import SCENARIOS
 
@@ -26,15 +23,13 @@ Document = dict[str, Any]
 BY = "REST"
 
 
-async def body_of(request: Request) -> Any:
+async def body_of(request: Request, largest: int = LARGEST_BODY) -> Any:
     """Return the JSON body of a request, {} if it is empty. Raises Problem."""
     parts, size = [], 0
     async for part in request.stream():
         size += len(part)
-        if size > LARGEST_BODY:
-            raise Problem(
-                413, "Too large", f"The body is larger than {LARGEST_BODY} bytes; expected one JSON document."
-            )
+        if size > largest:
+            raise Problem(413, "Too large", f"The body is larger than {largest} bytes; expected one JSON document.")
         parts.append(part)
     content = b"".join(parts)
     if not content.strip():
@@ -45,7 +40,7 @@ async def body_of(request: Request) -> Any:
         raise Problem(400, "Not JSON", f"The body is not JSON: {error}.") from error
 
 
-def resources(session: Session, pool: Pool, store: PresetStore, folder: str) -> APIRouter:
+def resources(session: Session, pool: Pool, folder: str) -> APIRouter:
     """Return the REST routes; answers of simulations pass through files in `folder`."""
     router = APIRouter(prefix="/api")
 
@@ -76,7 +71,7 @@ def resources(session: Session, pool: Pool, store: PresetStore, folder: str) -> 
             raise Problem(404, "No such scenario", f"There is no scenario {name!r}; known: {', '.join(SCENARIOS)}.")
         return SCENARIOS[name].model_dump(mode="json")
 
-    @router.post("/simulate", openapi_extra=_body(Scenario.__name__))
+    @router.post("/simulate", openapi_extra=body_named(Scenario.__name__))
     async def simulate(
         request: Request,
         trajectory: Annotated[Literal["none", "json", "csv", "binary"], Query()] = "none",
@@ -115,50 +110,14 @@ def resources(session: Session, pool: Pool, store: PresetStore, folder: str) -> 
         """Return the newest changes that were made, oldest first."""
         return session.history.last(last)
 
-    @router.post("/session/{command}", openapi_extra=_body("arguments of the command"))
+    @router.post("/session/{command}", openapi_extra=body_named("arguments of the command"))
     async def command(command: str, request: Request) -> Document:
         """Run a command of the live session; docs/protocol.md lists them."""
         return await session.command(command, await body_of(request), BY)
 
-    @router.get("/presets")
-    def presets() -> list[Document]:
-        """Return the saved tunings, newest first."""
-        return [preset.document() for preset in store.list()]
-
-    @router.put("/presets/{name}", openapi_extra=_body("nothing, or a tuning"))
-    async def save(name: str, request: Request) -> Document:
-        """Save the tuning in force, or the body's `tuning`, under a name."""
-        checked = _name(name)
-        body = await body_of(request)
-        if body == {}:
-            return await session.command("save_preset", {"name": checked}, BY)
-        if not isinstance(body, dict) or set(body) != {"tuning"}:
-            raise refused('The body is not as expected; expected {} to save the tuning in force, or {"tuning": ...}.')
-        try:
-            tuning = Tuning.model_validate_json(json.dumps(body["tuning"]))
-        except ValidationError as error:
-            raise from_validation(error, Tuning, "tuning") from error
-        return await session.presets.save_tuning(checked, tuning, BY)
-
-    @router.delete("/presets/{name}")
-    async def delete(name: str) -> Document:
-        """Delete a saved tuning."""
-        return await session.command("delete_preset", {"name": name}, BY)
-
-    @router.post("/presets/{name}/apply")
-    async def apply(name: str) -> Document:
-        """Use a saved tuning in the live session."""
-        return await session.command("apply_preset", {"name": name}, BY)
-
     return router
 
 
-def _name(name: str) -> str:
-    try:
-        return Named(name=name).name
-    except ValidationError as error:
-        raise from_validation(error, Named) from error
-
-
-def _body(title: str) -> Document:
+def body_named(title: str) -> Document:
+    """Return what the API's documentation says of a body that a route reads by itself."""
     return {"requestBody": {"content": {"application/json": {"schema": {"type": "object", "title": title}}}}}

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from backend.compute.analysis_jobs import analyse_loop, analysis_task, margins_of
+from backend.compute.calibration_job import calibrate
 from backend.compute.report_jobs import paper_task
 from backend.telemetry.frames import frames
 from backend.telemetry.ring import COLUMNS, EPOCH, PERIOD_S, WIDTH, Piece
@@ -29,9 +30,11 @@ __all__ = [
     "LONG",
     "analyse_loop",
     "analysis_task",
+    "calibrate",
     "margins_of",
     "paper_task",
     "plan_run",
+    "simulate_rows",
     "simulate_scenario",
     "simulate_to_file",
 ]
@@ -85,6 +88,13 @@ def simulate_to_file(scenario: Scenario, form: str, every: int, allow_unstable: 
     with tempfile.NamedTemporaryFile(dir=folder, delete=False) as file:
         file.write(content)
     return media_type, file.name
+
+
+def simulate_rows(scenario: Scenario, tuning_id: int, folder: str) -> str:
+    """Return the path, in `folder`, of all rows (samples, channels) of a simulation as a .npy file; see core's simulate."""
+    with tempfile.NamedTemporaryFile(dir=folder, suffix=".npy", delete=False) as file:
+        np.save(file, simulate(scenario, tuning_id).rows)
+    return file.name
 
 
 def export_controller(scenario: Scenario, form: str) -> tuple[str, bytes]:

@@ -31,10 +31,13 @@ Hearer = Callable[[float, str], None]
 
 
 class Worker:
-    """One worker process with a queue of its own."""
+    """One worker process with a queue of its own; `first_job` is compiled at its start, "" needs no compiler."""
 
-    def __init__(self, name: str, first_job: str, niceness: int = 10, entry: str = ENTRY) -> None:
+    def __init__(
+        self, name: str, first_job: str, niceness: int = 10, entry: str = ENTRY, jobs: str = "backend.compute.jobs"
+    ) -> None:
         self._name, self._first_job, self._niceness, self._entry = name, first_job, niceness, entry
+        self._jobs = jobs
         self._turn = asyncio.Lock()
         self._process: BaseProcess | None = None
         self._pipe: Connection
@@ -73,7 +76,7 @@ class Worker:
         await self._end()
         self._pipe, theirs = CONTEXT.Pipe()
         self._process = await asyncio.to_thread(
-            started, self._name, self._entry, theirs, self._niceness, self._first_job
+            started, self._name, self._entry, theirs, self._niceness, self._first_job, self._jobs
         )
         theirs.close()
         await self._answer(None, START_LIMIT_S)
@@ -130,7 +133,7 @@ class Worker:
 class Pool:
     """A worker for each kind of work, so that none waits for another.
 
-    Designs that live changes wait for; the analysis that follows each change; simulations; long tasks.
+    Designs that live changes wait for; the analysis that follows each change; simulations; long tasks; recordings.
     """
 
     def __init__(self) -> None:
@@ -138,8 +141,9 @@ class Pool:
         self.analysis = Worker("vssea analysis", "margins_of", niceness=8)
         self.simulation = Worker("vssea simulation", "simulate_scenario", niceness=10)
         self.tasks = Worker("vssea tasks", "analysis_task", niceness=15)
+        self.recordings = Worker("vssea recordings", "", niceness=12, jobs="backend.recordings.jobs")
 
     async def stop(self) -> None:
         """End all of them."""
-        workers = (self.design, self.analysis, self.simulation, self.tasks)
+        workers = (self.design, self.analysis, self.simulation, self.tasks, self.recordings)
         await asyncio.gather(*(worker.stop() for worker in workers))

@@ -1,9 +1,10 @@
 """Entry of a worker process: jobs in, answers out, one at a time, over one pipe.
 
-A job of LONG takes a `progress` as its last argument: it tells how far it is, and ends the job if anything came down the
-pipe, since nothing but the wish to end it comes while a job runs.
+A jobs module is plain functions and a set LONG of names. A job of LONG takes a `progress` as its last argument: it tells how
+far it is, and ends the job if anything came down the pipe, since nothing but the wish to end it comes while a job runs.
 """
 
+import importlib
 import signal
 import time
 import traceback
@@ -38,14 +39,15 @@ class Progress:
         return True
 
 
-def run_worker(pipe: Connection, niceness: int, first_job: str) -> None:
-    """Answer jobs (name, arguments) until the pipe closes; compile what `first_job` needs before the first."""
+def run_worker(pipe: Connection, niceness: int, first_job: str, jobs_module: str) -> None:
+    """Answer jobs (name, arguments) of a module until the pipe closes; compile what `first_job` needs before the first."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     set_niceness(niceness)  # sums give way to the control loop and to STOP
-    from backend.compute import jobs
-    from backend.compute.warm import warm_up
+    jobs = importlib.import_module(jobs_module)
+    if first_job:
+        from backend.compute.warm import warm_up  # brings in the compiler
 
-    warm_up(first_job)
+        warm_up(first_job)
     pipe.send(("ready", None))
     while True:
         try:

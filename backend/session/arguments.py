@@ -4,9 +4,8 @@ from typing import Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from backend.presets.contents import Note, PresetName, Tags
 from vssea_core.scenario import Scenario
-
-PresetName = Field(min_length=1, max_length=80, pattern=r"^[^/\\\x00-\x1f]+$", description="Name of a preset.")
 
 
 class Arguments(BaseModel):
@@ -22,7 +21,22 @@ class Nothing(Arguments):
 class Named(Arguments):
     """A preset's name."""
 
-    name: str = PresetName
+    name: PresetName
+
+
+class Saving(Named):
+    """What to save the tuning in force as; `revision` is that of the preset as it is known."""
+
+    note: Note = ""
+    tags: Tags | None = None
+    revision: int | None = Field(None, ge=1, strict=True, description="Needed where there is a preset of this name.")
+
+
+class Applying(Named):
+    """Which version of a preset to use, and which paths of the tuning; without them the newest, and all that differs."""
+
+    version: int | None = Field(None, ge=1, strict=True)
+    paths: list[str] | None = Field(None, max_length=64)
 
 
 class Samples(Arguments):

@@ -5,6 +5,8 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from backend.differences import differences as differences
+from backend.differences import value_at
 from backend.problem import FieldError, Problem, from_validation, refused
 from vssea_core.changes import UnknownPath, set_values
 from vssea_core.scenario import Scenario
@@ -51,10 +53,7 @@ def after_change(scenario: Scenario, changed: dict[str, Any]) -> Scenario:
 
 def valued(scenario: Scenario, path: str) -> Any:
     """Return what stands at a dotted path of the scenario, None if nothing does."""
-    here: Any = scenario.model_dump(mode="json")
-    for name in path.split("."):
-        here = here.get(name) if isinstance(here, dict) else None
-    return here
+    return value_at(scenario.model_dump(mode="json"), path)
 
 
 def validated(document: dict[str, Any]) -> Scenario:
@@ -63,15 +62,3 @@ def validated(document: dict[str, Any]) -> Scenario:
         return Scenario.model_validate_json(json.dumps(document))
     except ValidationError as error:
         raise from_validation(error, Scenario, consequence=CONSEQUENCE) from error
-
-
-def differences(before: Any, after: Any, path: str = "") -> dict[str, tuple[Any, Any]]:
-    """Return by path every value that differs between two dumped documents."""
-    if isinstance(before, dict) and isinstance(after, dict):
-        found: dict[str, tuple[Any, Any]] = {}
-        if before.get("kind") != after.get("kind"):
-            return {f"{path}.kind".lstrip("."): (before.get("kind"), after.get("kind"))}
-        for name in after:
-            found |= differences(before.get(name), after[name], f"{path}.{name}".lstrip("."))
-        return found
-    return {} if before == after else {path: (before, after)}

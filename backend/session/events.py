@@ -20,6 +20,7 @@ Kind = Literal[
     "link",
     "pin",
     "trigger",
+    "recording",
 ]
 Severity = Literal["info", "warning", "fault"]
 KEPT = 500

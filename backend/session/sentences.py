@@ -2,8 +2,8 @@
 
 from typing import Any
 
+from backend.differences import change_words as change_words
 from backend.loop.messages import State
-from vssea_core.fields import Part
 from vssea_core.scenario import Scenario
 from vssea_core.signals.documents import Reference
 
@@ -50,12 +50,6 @@ def reference_words(reference: Reference) -> str:
             return f"following {len(reference.times_s)} recorded samples"
 
 
-def change_words(scenario: Scenario, path: str, before: Any, after: Any) -> str:
-    """Return one change as `symbol old → new unit`."""
-    label, unit = _label(scenario, path)
-    return f"{label} {_value(before)} → {_value(after)}{' ' + unit if unit else ''}"
-
-
 def changes_words(scenario: Scenario, part: str, pairs: dict[str, tuple[Any, Any]]) -> list[str]:
     """Return changes of a part ("" = of the whole scenario, where another name says enough), each as words."""
     if not part and "name" in pairs:
@@ -73,27 +67,3 @@ def several(words: list[str]) -> str:
 def whose(made_by: str, by: str) -> str:
     """Return whose change it was, if it was another's than that of `by`."""
     return "" if made_by == by else f" the change of {made_by}"
-
-
-def _label(scenario: Scenario, path: str) -> tuple[str, str]:
-    here: Any = scenario
-    *parents, last = path.split(".")
-    for name in parents:
-        here = here[int(name)] if isinstance(here, tuple) else getattr(here, name, None)
-    if last == "kind":
-        return parents[-1].replace("_", " "), ""
-    info = type(here).model_fields.get(last) if isinstance(here, Part) else None
-    if info is None:
-        return path, ""
-    extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
-    return str(extra.get("symbol") or info.title or last), str(extra.get("unit") or "")
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, bool) or value is None:
-        return {True: "on", False: "off", None: "none"}[value]
-    if isinstance(value, (int, float)):
-        return f"{value:.4g}"
-    if isinstance(value, (list, dict)):
-        return f"{len(value)} terms" if isinstance(value, list) else "…"
-    return str(value).replace("_", " ")

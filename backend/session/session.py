@@ -10,9 +10,10 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from backend.compute.pool import JobFailedError, Pool
-from backend.presets.store import PresetStore
+from backend.presets.last import InForce
 from backend.problem import Problem, from_validation
 from backend.session.arguments import (
+    Applying,
     EntryNumber,
     ExcerptChange,
     ExcerptNumber,
@@ -23,6 +24,7 @@ from backend.session.arguments import (
     PinnedSpan,
     Samples,
     SavePoint,
+    Saving,
 )
 from backend.session.changes import Changes
 from backend.session.control_link import ControlLink
@@ -33,6 +35,7 @@ from backend.session.excerpt import ExcerptsInMemory, ExcerptStore, NoRecordings
 from backend.session.health import Health
 from backend.session.history_commands import HistoryCommands
 from backend.session.journal import Journal, Silent, Told, Unharming, wall_time
+from backend.session.kept_run import KeptRun
 from backend.session.limit_watch import LimitWatch
 from backend.session.live_margins import LiveMargins
 from backend.session.part_commands import PartCommands
@@ -44,6 +47,7 @@ from backend.session.status import Status
 from backend.session.trigger import Trigger
 from backend.session.trigger_source import Arming
 from backend.settings import Settings
+from backend.store.database import Database
 from backend.telemetry.ring import Ring, RingReader
 from backend.telemetry.stop_flag import StopFlag
 from vssea_core.scenario import Scenario
@@ -64,16 +68,16 @@ class Session:
         self,
         settings: Settings,
         pool: Pool,
-        store: PresetStore,
+        database: Database,
         journal: Journal | None = None,
         recordings: Recordings | None = None,
         excerpts: ExcerptStore | None = None,
     ) -> None:
-        self.settings, self._pool, self._store = settings, pool, store
+        self.settings, self._pool = settings, pool
         self.design = pool.design
         self.journal = Unharming(journal or Silent())
         self.running = RunningScenario(SCENARIOS[settings.scenario])
-        self.preset: str | None = None
+        self.preset: InForce | None = None
         self.status = Status()
         self._segment, self.flag = Ring(), StopFlag()
         self.ring_name = self._segment.name
@@ -90,10 +94,11 @@ class Session:
         self._tasks: set[asyncio.Task[None]] = set()
         self._save_timer: asyncio.TimerHandle | None = None
         self.parts, self.runs = PartCommands(self), RunCommands(self)
+        self.presets = PresetCommands(database, self)
+        self._kept = KeptRun(self.presets.presets, self)
         self.history = HistoryCommands(self)
         self.pins = Pins(self, recordings or NoRecordings(), excerpts or ExcerptsInMemory())
         self.trigger = Trigger(self)
-        self.presets = PresetCommands(store, self)
         self._commands: dict[str, tuple[type[BaseModel], Callable[[Any, str], Awaitable[Message]]]] = {
             "tune": (Changes, self.parts.tune),
             "set_reference": (Changes, self.parts.set_reference),
@@ -115,8 +120,8 @@ class Session:
             "unpin": (ExcerptNumber, self.pins.unpin),
             "arm_trigger": (Arming, self.trigger.arm),
             "disarm_trigger": (Nothing, self.trigger.disarm),
-            "save_preset": (Named, self.presets.save),
-            "apply_preset": (Named, self.presets.apply),
+            "save_preset": (Saving, self.presets.save),
+            "apply_preset": (Applying, self.presets.apply),
             "delete_preset": (Named, self.presets.delete),
         }
 
@@ -124,6 +129,11 @@ class Session:
     def scenario(self) -> Scenario:
         """The scenario as it stands now."""
         return self.running.now
+
+    @property
+    def beginning(self) -> Scenario:
+        """The scenario as it stands at t = 0, before its sequence changes it."""
+        return self.running.beginning
 
     # ---- life
 
@@ -142,14 +152,14 @@ class Session:
         await asyncio.gather(*self._tasks, return_exceptions=True)
         if self._save_timer is not None:
             self._save_timer.cancel()
-            await asyncio.to_thread(self._store.save_last, self.running.beginning, self.preset)
+            await self._kept.write()
         await self.link.stop()
         self.ring.close()
         self.flag.close()
         self._segment.close()
 
     async def _begin(self) -> None:
-        last = await asyncio.to_thread(self._store.last)
+        last = await self._kept.read()
         if last is not None:
             self.running.load(last.scenario)
             self.preset = last.preset
@@ -218,10 +228,7 @@ class Session:
 
     def document(self, by: str = "server") -> Message:
         """Return the live scenario and its preset."""
-        preset = None
-        if self.preset is not None:
-            saved = self._store.known(self.preset)
-            preset = saved and saved.document()
+        preset = self.preset and self.preset.document()
         differs = self.running.beginning != self.scenario
         beginning = self.running.beginning.model_dump(mode="json") if differs else None
         return {
@@ -243,8 +250,13 @@ class Session:
         self.trigger.hear(event)
         self.tell({"type": "event", "event": event.document()})
 
+    def note_recording(self, sentence: str, is_trouble: bool) -> None:
+        """Log an event of the recorder."""
+        self.note("recording", sentence, "recorder", "warning" if is_trouble else "info")
+
     def note(self, kind: Kind, text: str, by: str, severity: Severity = "info") -> None:
         """Log an event of now."""
+        self.status.follow(self.ring.latest())
         self.log.add(kind, text, by, self.status.epoch, self.status.time_s, severity)
 
     # ---- commands
@@ -300,4 +312,4 @@ class Session:
 
     async def _save(self) -> None:
         self._save_timer = None
-        await asyncio.to_thread(self._store.save_last, self.running.beginning, self.preset)
+        await self._kept.write()

@@ -13,9 +13,11 @@ import { ChangeHistory } from "./history/change_history.js";
 import { HistoryPanel } from "./history/history_panel.js";
 import { ParameterList } from "./parameters/parameter_list.js";
 import { CHARTS, channelsOf } from "./plots/chart_list.js";
+import { LiveSource } from "./plots/live_source.js";
 import { PlotStack } from "./plots/plot_stack.js";
 import { PlotToolbar } from "./plots/plot_toolbar.js";
 import { PlotsOverlay } from "./plots/plots_overlay.js";
+import { RecordingsView } from "./recordings/recordings_view.js";
 import { Scene } from "./scene.js";
 import { LiveSession } from "./session/live_session.js";
 import { rest } from "./session/rest.js";
@@ -41,7 +43,7 @@ const run = new RunControls(session, new ResetDialog());
 const keysDialog = new KeysDialog();
 const edits = new Edits(session);
 const history = new ChangeHistory(session);
-const stack = new PlotStack(document.getElementById("charts"), session, theme);
+const stack = new PlotStack(document.getElementById("charts"), new LiveSource(session), theme);
 const toolbar = new PlotToolbar(document.getElementById("plot-toolbar"), stack);
 let parameters = null;
 
@@ -61,17 +63,20 @@ new SideTabs(document.getElementById("stability"), [
 ]);
 new AnalyseView(document.getElementById("view-analyse"), { session, theme, views });
 
+const recordings = new RecordingsView(document.getElementById("view-recordings"), { session, theme, views });
+
 bindKeys({
   stop: () => stop.press(),
-  pauseOrResume: () => run.pauseOrResume(),
-  step: () => run.step(),
+  pauseOrResume: () => recordings.takeSpace() || run.pauseOrResume(),
+  step: () => (recordings.isOpen ? recordings.page.step() : run.step()),
   freeze: () => toolbar.toggleFreeze(),
-  cursors: () => stack.cursors.toggle(),
+  cursors: () => (recordings.isOpen ? recordings.page.stack : stack).cursors.toggle(),
   undo: () => history.undo(),
   redo: () => history.redo(),
   savePreset: () => parameters?.presets.save(),
   viewTune: () => views.show("tune"),
   viewAnalyse: () => views.show("analyse"),
+  viewRecordings: () => views.show("recordings"),
   showKeys: () => keysDialog.show(),
 });
 

@@ -6,12 +6,13 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
+from backend.presets.store import PresetStore
+
 from backend.compute.jobs import plan_run
 from backend.compute.pool import JobRefusedError
 from backend.loop import messages
 from backend.loop.control_loop import ControlLoop
 from backend.loop.pacer import Pacer
-from backend.presets.store import PresetStore
 from backend.problem import refused
 from backend.session.control_reports import ControlReports
 from backend.session.events import Event

@@ -1,0 +1,1 @@
+"""The database: tables and their migrations, versioned documents, single kept values; its troubles told as problems."""
