@@ -38,13 +38,14 @@ class Pins:
         self._turn = asyncio.Lock()
 
     async def load(self) -> None:
-        """Take over what was kept; a store in trouble leaves the list empty."""
-        try:
-            kept = await asyncio.to_thread(self._store.list)
-        except Problem as problem:
-            logger.warning("pinned runs cannot be read: %s", problem.detail)
-            return
-        self._excerpts = {excerpt.id: excerpt for excerpt in kept} | self._excerpts
+        """Take over what is kept; a store in trouble leaves the list as it was."""
+        async with self._turn:
+            try:
+                kept = await asyncio.to_thread(self._store.list)
+            except Problem as problem:
+                logger.warning("pinned runs cannot be read: %s", problem.detail)
+                return
+            self._excerpts = {excerpt.id: excerpt for excerpt in kept}
         self._tell()
 
     def message(self) -> Message:
