@@ -46,8 +46,9 @@ export function stateWord({ state, origin }) {
   return { text, tone: state === "damaged" ? "warning" : state === "recording" ? "active" : "" };
 }
 
-/** @returns {string} "3 events", "1 fault" */
+/** @returns {string} "3 events", "1 fault"; "–" while it is not known */
 export function counted(number, word) {
+  if (number === null || number === undefined) return "–";
   return `${number} ${word}${number === 1 ? "" : "s"}`;
 }
 
