@@ -34,6 +34,7 @@ __all__ = [
     "margins_of",
     "paper_task",
     "plan_run",
+    "simulate_rows",
     "simulate_scenario",
     "simulate_to_file",
 ]
@@ -87,6 +88,13 @@ def simulate_to_file(scenario: Scenario, form: str, every: int, allow_unstable: 
     with tempfile.NamedTemporaryFile(dir=folder, delete=False) as file:
         file.write(content)
     return media_type, file.name
+
+
+def simulate_rows(scenario: Scenario, tuning_id: int, folder: str) -> str:
+    """Return the path, in `folder`, of all rows (samples, channels) of a simulation as a .npy file; see core's simulate."""
+    with tempfile.NamedTemporaryFile(dir=folder, suffix=".npy", delete=False) as file:
+        np.save(file, simulate(scenario, tuning_id).rows)
+    return file.name
 
 
 def export_controller(scenario: Scenario, form: str) -> tuple[str, bytes]:

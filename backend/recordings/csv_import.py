@@ -136,7 +136,8 @@ def _mapped(heading: str, asked: dict[str, Any]) -> Column | None:
     if channel not in FIELD_INDEX:
         raise ValueError(f"{heading!r} is mapped to {channel!r}, which is no channel; known: {', '.join(FIELD_INDEX)}")
     unit = split_heading(heading)[1]
-    factor, offset = asked.get("factor"), asked.get("offset", 0.0)
+    factor: Any = asked.get("factor")
+    offset: Any = asked.get("offset", 0.0)
     if factor is None:
         factor = factor_of(unit, channel)
     for name, value in (("factor", factor), ("offset", offset)):

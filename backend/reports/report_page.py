@@ -1,13 +1,13 @@
 """The report as one page that needs no other file: figures inline, claims with their numbers. No script."""
 
 import importlib.resources
-import re
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 
 from backend.reports.claims_table import result_words
 from backend.reports.figures import DRAWINGS, Drawing
+from backend.reports.inline import inline_svg
 from vssea_core.paper.claim import Number, Verdict
 from vssea_core.paper.claims import STATEMENT
 
@@ -84,21 +84,6 @@ def _cells(number: Number | None) -> str:
 
 def _figure(drawing: Drawing, svg: bytes) -> str:
     return (
-        f'<figure id="{drawing.name}"><div class="paper">{_inline(drawing, svg)}</div>'
+        f'<figure id="{drawing.name}"><div class="paper">{inline_svg(svg, drawing.name, drawing.caption)}</div>'
         f"<figcaption>{escape(drawing.caption)}</figcaption></figure>"
-    )
-
-
-def _inline(drawing: Drawing, svg: bytes) -> str:
-    """Return the SVG for a page with others: without its head, with ids of its own, named for those who do not see it."""
-    text = svg.decode("utf-8")
-    text = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.DOTALL)
-    for before, after in (('id="', '"'), ('href="#', '"'), ("url(#", ")")):
-        text = re.sub(f"({re.escape(before)})([^\"')]+)({re.escape(after)})", rf"\g<1>{drawing.name}-\2\3", text)
-    label = escape(drawing.caption, quote=True)
-    return re.sub(
-        r'<svg ([^>]*?)width="[^"]*"([^>]*?)height="[^"]*"',
-        rf'<svg role="img" aria-label="{label}" \1\2',
-        text,
-        count=1,
     )

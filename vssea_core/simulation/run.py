@@ -27,15 +27,15 @@ def prepare_scenario(scenario: Scenario) -> PreparedRun:
     return PreparedRun(prepared, tuple(followers))
 
 
-def simulate(scenario: Scenario) -> Trajectory:
-    """Return the trajectory of `scenario`, every sample.
+def simulate(scenario: Scenario, tuning_id: int = 1) -> Trajectory:
+    """Return the trajectory of `scenario`, every sample; its tuning has number `tuning_id`, the next one of its sequence one more.
 
     A diverging run is not an error: it ends early and the trajectory's `ending` says why. Raises ValueError if the
     scenario cannot start (see equilibrium_state) or a design has no solution.
     """
     period = scenario.timing.sample_time_s
     rows = np.empty((max(1, round(scenario.duration_s / period)), len(CHANNELS)))
-    done, reason = ClosedLoop(scenario, prepare_scenario(scenario)).advance(rows)
+    done, reason = ClosedLoop(scenario, prepare_scenario(scenario), tuning_id).advance(rows)
     if reason is None:
         return Trajectory(rows, period)
     return Trajectory(rows[: done + 1], period, f"stopped at t = {done * period:.3f} s: {reason}")

@@ -1,0 +1,129 @@
+"""What the recordings' worker can do: paths in; bytes, dictionaries or paths out. The web process never imports this module."""
+
+import json
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from backend.recordings import csv_import as imports
+from backend.recordings import exports
+from backend.recordings.details import details, row_at
+from backend.recordings.difference import difference
+from backend.recordings.reader import Recording
+from backend.recordings.recorded_reference import recorded_reference
+from backend.recordings.replayed_scenario import Replayed, replayed_scenario
+from backend.recordings.report import report
+from backend.recordings.samples import samples_answer
+from backend.recordings.simulated import keep_simulation
+from backend.recordings.spectrum import spectrum
+from backend.recordings.summary import summary
+from vssea_core.scenario import Scenario
+
+if TYPE_CHECKING:
+    from backend.compute.worker import Progress
+
+__all__ = [
+    "LONG",
+    "describe",
+    "differ",
+    "export",
+    "import_csv",
+    "keep_simulated",
+    "plan_replay",
+    "pose_at",
+    "preview_csv",
+    "reference_of",
+    "report_of",
+    "samples_of",
+    "spectrum_of",
+    "summarise",
+]
+
+LONG = frozenset({"export"})
+"""Jobs that tell their progress and can be cancelled; see compute.worker."""
+Document = dict[str, Any]
+OPENED = 8
+
+
+@lru_cache(OPENED)
+def _opened(path: str, inode: int, size: int, changed_ns: int) -> Recording:
+    return Recording(Path(path))
+
+
+def opened(path: str) -> Recording:
+    """Return the recording at a path; its records are looked through again only if the file has changed."""
+    status = Path(path).stat()
+    return _opened(path, status.st_ino, status.st_size, status.st_mtime_ns)
+
+
+def summarise(path: str, cache: str | None) -> Document:
+    """Return facts, metrics and picture, and keep the overview in the folder `cache`."""
+    return summary(opened(path), Path(cache) if cache else None)
+
+
+def describe(path: str) -> Document:
+    """Return everything but the samples."""
+    return details(opened(path))
+
+
+def samples_of(path: str, channels: list[str], from_s: float, to_s: float, points: int, cache: str) -> bytes:
+    """Return the binary answer with samples of a span."""
+    return samples_answer(opened(path), channels, from_s, to_s, points, Path(cache))
+
+
+def export(
+    path: str, form: str, channels: list[str] | None, from_s: float, to_s: float, folder: str, progress: "Progress"
+) -> tuple[str, str]:
+    """Return media type and path of a new file in `folder`."""
+    return exports.export(opened(path), form, channels, from_s, to_s, folder, progress)
+
+
+def preview_csv(path: str, columns: Document | None, sample_rate_hz: float | None) -> Document:
+    """Return what an import would read."""
+    return imports.csv_preview(Path(path), columns, sample_rate_hz)
+
+
+def import_csv(
+    path: str, target: str, head: dict[str, str], columns: Document | None, sample_rate_hz: float | None
+) -> str:
+    """Write a rig's own log as a recording; return where."""
+    return str(imports.csv_import(Path(path), Path(target), head, columns, sample_rate_hz))
+
+
+def plan_replay(path: str, to_s: float | None) -> Replayed:
+    """Return the scenario that gives a recording again."""
+    return replayed_scenario(opened(path), to_s)
+
+
+def keep_simulated(path: str, replayed: Replayed, rows: str, target: str) -> bytes:
+    """Write the rows of a simulation as a recording; return its id and the residual as JSON."""
+    found = keep_simulation(opened(path), replayed, np.load(rows), Path(target))
+    return json.dumps({"kind": "simulate_recording", "recording": Path(target).stem, **found}).encode()
+
+
+def spectrum_of(path: str, channels: list[str], from_s: float, to_s: float) -> bytes:
+    """Return spectral densities as JSON."""
+    return json.dumps(spectrum(opened(path), channels, from_s, to_s), allow_nan=False).encode()
+
+
+def differ(path: str, at_s: float | None, against: str | Scenario) -> Document:
+    """Return what changes from a recording's scenario to another's, a recording's path or a scenario."""
+    other = against if isinstance(against, Scenario) else opened(against)
+    return difference(opened(path), at_s, other)
+
+
+def reference_of(path: str, channel: str, from_s: float, to_s: float) -> Document:
+    """Return a course of a recording as a reference document."""
+    return recorded_reference(opened(path), channel, from_s, to_s)
+
+
+def report_of(path: str, folder: str, cache: str) -> str:
+    """Return the path of the report, one HTML page, in `folder`."""
+    return report(opened(path), Path(folder), Path(cache))
+
+
+def pose_at(path: str, time_s: float) -> list[float]:
+    """Return the sample nearest to a time."""
+    return row_at(opened(path), time_s)
