@@ -183,7 +183,7 @@ export class RecordingList {
   }
 
   async #rename(recording) {
-    const name = await this.ask.line("Rename the recording", nameOf(recording), "Rename");
+    const name = await this.ask.line("Rename the recording", recording.name, "Rename");
     if (name !== null) this.#change(recording.id, { name: name.trim() });
   }
 

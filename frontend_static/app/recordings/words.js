@@ -35,9 +35,10 @@ export function startedWords(iso) {
   return `${when.toLocaleDateString([], { day: "numeric", month: "short", year })} ${time}`;
 }
 
-/** @returns {string} what the recording is called */
+/** @returns {string} what the recording is called, and when it was made if it has no name of its own */
 export function nameOf({ name, scenario, started_at }) {
-  return name || `${scenario} ${startedWords(started_at)}`;
+  const title = scenario?.name ?? scenario;
+  return name && name !== title ? name : `${title || "recording"}, ${startedWords(started_at)}`;
 }
 
 /** @returns {{text: string, tone: string}} the small word beside a recording, "" for one that is as usual */
