@@ -22,7 +22,7 @@ export class OverlayLines {
     this.#shown = overlays.map((overlay) => {
       const range = [from - overlay.shift, to - overlay.shift];
       const picture = overlay.picture(range, pixels);
-      return { overlay, picture, span: new Span(picture.time, range, pixels) };
+      return { overlay, picture, span: new Span(picture, range, pixels) };
     });
     for (const { overlay, picture, span } of this.#shown)
       for (const { channel } of this.series)

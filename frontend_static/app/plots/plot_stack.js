@@ -164,7 +164,7 @@ export class PlotStack extends EventTarget {
 
   #draw(now) {
     const { picture, range } = this.timeWindow;
-    const span = new Span(picture.time, range, this.#charts[0].pixels);
+    const span = new Span(picture, range, this.#charts[0].pixels);
     for (const chart of this.#charts) chart.draw(picture, span, range, now);
     this.position = this.#position;
   }

@@ -2,7 +2,7 @@ import { element, setText } from "../element.js";
 import { CommitBox } from "../parameters/commit_box.js";
 import { fixed } from "../quantity.js";
 import { metricWords } from "./metric_words.js";
-import { nameOf, readTags, sizeWords, startedWords, durationWords, stateWord } from "./words.js";
+import { readTags, sizeWords, startedWords, durationWords, stateWord } from "./words.js";
 
 const NOTE_PATIENCE_MS = 800;
 
@@ -50,7 +50,7 @@ export class FactsPanel {
     const isOther = this.facts?.id !== facts.id;
     if (isOther) this.#saveNote();
     this.facts = facts;
-    this.name.show(nameOf(facts));
+    this.name.show(facts.name);
     this.tags.show(facts.tags.join(", "));
     if (isOther || (this.#timer === null && document.activeElement !== this.note)) this.note.value = facts.note;
     showStar(this.star, facts.starred);

@@ -1,5 +1,5 @@
 import { element, setText } from "../element.js";
-import { readNumber } from "../quantity.js";
+import { compact, inputText, readNumber } from "../quantity.js";
 import { Refusal } from "../session/refusal.js";
 
 const FACTORS = [
@@ -66,9 +66,9 @@ export class ImportDialog {
       const preview = await this.#send(true);
       this.#show(preview);
       this.save.disabled = false;
-      this.#say(preview.problems?.join(" ") ?? "");
+      this.#say("");
     } catch (refusal) {
-      if (!this.body.childElementCount) this.#show({ columns: this.#ownHeadings() });
+      if (!this.body.childElementCount) this.#show({ columns: [], ignored: this.#ownHeadings() });
       this.#say(refusal.message);
     }
   }
@@ -102,13 +102,14 @@ export class ImportDialog {
 
   #ownHeadings() {
     const [first] = this.#text.split(/\r?\n/, 1);
-    return first.split(/[,;\t]/).map((heading) => ({ heading: heading.trim(), channel: null, factor: 1 }));
+    return first.split(/[,;\t]/).map((heading) => heading.trim().replace(/^"(.*)"$/, "$1"));
   }
 
-  #show({ columns, samples, from_s, to_s, period_s }) {
-    if (samples !== undefined) setText(this.summary, `${samples} samples from ${from_s} to ${to_s} s, ${period_s} s apart.`);
+  #show(preview) {
+    setText(this.summary, preview.rows === undefined ? "" : spanWords(preview));
     if (this.body.childElementCount) return;
-    this.body.replaceChildren(...columns.map((column) => this.#line(column)));
+    const left = preview.ignored.map((heading) => ({ heading, channel: null, factor: 1 }));
+    this.body.replaceChildren(...[...preview.columns, ...left].map((column) => this.#line(column)));
   }
 
   #line({ heading, channel, factor }) {
@@ -118,11 +119,14 @@ export class ImportDialog {
     is.value = channel ?? "";
     const by = element("select", { "aria-label": `factor of ${heading}` }, ...FACTORS.map(([text, value]) => new Option(text, value)), new Option("other…", "other"));
     const own = element("input", { type: "text", class: "number", "aria-label": `other factor of ${heading}`, hidden: true, value: "1" });
-    by.value = FACTORS.some(([, value]) => value === factor) ? String(factor) : "1";
+    const known = FACTORS.find(([, value]) => Math.abs(value - factor) <= 1e-9 * value);
+    by.value = known ? String(known[1]) : "other";
+    own.hidden = known !== undefined;
+    own.value = inputText(factor);
     const change = () => {
       own.hidden = by.value !== "other";
       const value = by.value === "other" ? readNumber(own.value) : Number(by.value);
-      this.#columns[heading] = { channel: is.value || null, factor: value };
+      this.#columns[heading] = is.value ? { channel: is.value, factor: value } : { channel: null };
       this.#preview();
     };
     for (const control of [is, by, own]) control.addEventListener("change", change);
@@ -133,4 +137,10 @@ export class ImportDialog {
     setText(this.problem, text);
     this.problem.hidden = text === "";
   }
+}
+
+function spanWords({ rows, from_s, to_s, period_s, even, derived }) {
+  const apart = `${compact(1e3 * period_s)} ms apart${even ? "" : ", not evenly"}`;
+  const more = derived.length ? ` ${derived.join(", ")} is computed.` : "";
+  return `${rows} samples from ${compact(from_s)} to ${compact(to_s)} s, ${apart}.${more}`;
 }

@@ -5,6 +5,12 @@ const METRICS = {
   peak_error: { label: "peak error", unit: "mrad", factor: 1e3 },
   rms_error: { label: "RMS error", unit: "mrad", factor: 1e3 },
   peak_torque: { label: "peak torque", unit: "N·m", factor: 1 },
+  rms_torque: { label: "RMS torque", unit: "N·m", factor: 1 },
+  torque_chatter: { label: "torque chatter", unit: "N·m", factor: 1 },
+  saturated: { label: "saturated", unit: "%", factor: 1 },
+  saturated_time: { label: "time saturated", unit: "s", factor: 1 },
+  observer_error: { label: "observer error", unit: "N·m", factor: 1 },
+  motor_observer_error: { label: "motor observer error", unit: "N·m", factor: 1 },
 };
 
 /** @returns {{figure: string, unit: string}} one metric as it is shown, "–" if it is not known */
@@ -21,7 +27,7 @@ export function metricWords(metrics) {
   return [
     ...known.map((name) => {
       const { figure, unit } = metricFigure(metrics, name);
-      return { label: METRICS[name].label, words: `${figure} ${unit}` };
+      return { label: METRICS[name].label, words: figure === "–" ? figure : `${figure} ${unit}` };
     }),
     ...others.map((name) => ({ label: name.replaceAll("_", " "), words: significant(metrics[name]) })),
   ];

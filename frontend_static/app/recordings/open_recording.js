@@ -134,6 +134,7 @@ export class OpenRecording {
     run.need(channels);
     run.addEventListener("change", () => {
       this.#say(run.problem);
+      if (!run.problem) this.#leaveOut(charts);
       if (!this.replay.isPlaying) this.#describe();
     });
     this.#say("");
@@ -147,6 +148,15 @@ export class OpenRecording {
     this.#tell(facts);
     this.replay.open(run.extent);
     if (facts.state === "recording") this.#timer = setTimeout(() => this.#grow(), GROWS_MS);
+  }
+
+  /** An imported recording has few channels: charts without any values are left out. */
+  #leaveOut(charts) {
+    const { run } = this.source;
+    if (run?.facts.origin !== "import" || this.stack.layouts !== charts) return;
+    const picture = run.picture(run.extent, this.stack.timeWindow.pixels);
+    const known = chartsFor({ has: (name) => run.channels.has(name) && picture.column(name).some((value) => !Number.isNaN(value)) });
+    if (picture.time.length && known.length && known.length < charts.length) this.stack.show(known);
   }
 
   #tell(facts) {

@@ -4,6 +4,7 @@ const MARGIN = 0.5; // of the shown span, fetched on either side of it, so that 
 const POINTS_PER_PIXEL = 2; // least and greatest of each
 const ENOUGH_PER_PIXEL = 1.2;
 const EXACT_PER_PIXEL = 8; // so few samples a pixel are fetched one by one
+const MOST_POINTS = 20_000; // that the server gives at once
 const PATIENCE_MS = 50; // a drag asks for many spans
 const RETRY_MS = 2000;
 const AROUND = 20; // samples on either side of a cursor
@@ -91,8 +92,9 @@ export class RecordedRun extends EventTarget {
     const span = { from: Math.max(first, from - margin), to: Math.min(last, to + margin) };
     const share = (span.to - span.from) / (to - from);
     const samples = Math.ceil((span.to - span.from) / this.period) + 2;
-    const few = samples <= share * EXACT_PER_PIXEL * pixels;
-    this.#wanted = { ...span, points: few ? samples + 2 : Math.ceil(share * POINTS_PER_PIXEL * pixels), isWhole };
+    const few = samples <= Math.min(MOST_POINTS - 2, share * EXACT_PER_PIXEL * pixels);
+    const points = few ? samples + 2 : Math.ceil(share * POINTS_PER_PIXEL * pixels);
+    this.#wanted = { ...span, points: Math.max(4, Math.min(MOST_POINTS, points)), isWhole };
     if (this.#asked && covers({ asked: this.#asked }, [from, to]) && this.#asked.points >= this.#wanted.points / 2) return;
     this.#timer ??= setTimeout(() => this.#fetch(), this.#whole.time.length ? PATIENCE_MS : 0);
   }

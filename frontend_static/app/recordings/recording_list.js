@@ -4,7 +4,7 @@ import { AskDialog } from "./ask_dialog.js";
 import { ImportDialog } from "./import_dialog.js";
 import { RecordingRow } from "./recording_row.js";
 import { addressOf } from "./samples.js";
-import { counted, nameOf, sizeWords } from "./words.js";
+import { counted, durationWords, nameOf, sizeWords } from "./words.js";
 
 const PAGE = 50;
 const NEWEST = 3; // looked at again and again: one may be under way
@@ -31,6 +31,7 @@ export class RecordingList {
     this.chosen = new Set();
     this.ask = new AskDialog();
     this.importing = new ImportDialog(session, (recording) => this.open(recording.id));
+    session.addEventListener("recordings", () => this.root.hidden || this.load());
     this.search = element("input", { type: "search", "aria-label": "Search", placeholder: "Search names, notes, tags, scenarios", input: () => this.#typed() });
     this.starred = element("button", { type: "button", class: "chip", "aria-pressed": "false", click: () => this.#toggleStarred() }, "★ starred");
     this.origin = element(
@@ -74,7 +75,7 @@ export class RecordingList {
     const asked = (this.#asked += 1);
     const answer = await this.#get({ limit: Math.max(PAGE, this.#order.length) });
     if (asked !== this.#asked) return;
-    if (answer) this.#show(answer.recordings, answer.recordings.length);
+    if (answer) this.#show(answer);
     this.#timer = setTimeout(() => this.#watch(), LOOK_AGAIN_MS);
   }
 
@@ -103,7 +104,7 @@ export class RecordingList {
     if (!answer) return;
     for (const recording of answer.recordings) this.#take(recording);
     this.#arrange([...this.#order, ...answer.recordings.map(({ id }) => id)]);
-    this.more.hidden = answer.recordings.length < PAGE;
+    this.more.hidden = !answer.more;
   }
 
   async #get(query) {
@@ -111,7 +112,7 @@ export class RecordingList {
     const given = Object.entries({ ...filters, ...query }).filter(([, value]) => value);
     try {
       const answer = await rest("GET", `/api/recordings?${new URLSearchParams(given)}`);
-      this.#say("");
+      this.#say(answer.trouble ?? "");
       this.#tellDisk(answer);
       return answer;
     } catch (refusal) {
@@ -124,10 +125,10 @@ export class RecordingList {
     return this.starred.getAttribute("aria-pressed") === "true";
   }
 
-  #show(recordings, count) {
+  #show({ recordings, more }) {
     for (const recording of recordings) this.#take(recording);
     this.#arrange(recordings.map(({ id }) => id));
-    this.more.hidden = count < PAGE;
+    this.more.hidden = !more;
   }
 
   #take(recording) {
@@ -182,7 +183,7 @@ export class RecordingList {
   }
 
   async #rename(recording) {
-    const name = await this.ask.line("Rename the recording", nameOf(recording), "Rename");
+    const name = await this.ask.line("Rename the recording", recording.name, "Rename");
     if (name !== null) this.#change(recording.id, { name: name.trim() });
   }
 
@@ -192,7 +193,7 @@ export class RecordingList {
   }
 
   async #remove(recording) {
-    const text = `${durationWords(recording)} It cannot be brought back.`;
+    const text = `${contents(recording)} It cannot be brought back.`;
     if (!(await this.ask.sure(`Delete ${nameOf(recording)}?`, text, "Delete"))) return;
     try {
       await rest("DELETE", addressOf(recording.id));
@@ -245,6 +246,6 @@ export class RecordingList {
   }
 }
 
-function durationWords({ duration_s, size_bytes, events }) {
-  return `${Math.round(duration_s)} s of samples (${sizeWords(size_bytes)}), ${counted(events, "event")}.`;
+function contents({ duration_s, size_bytes, events }) {
+  return `${durationWords(duration_s)} of samples (${sizeWords(size_bytes)}), ${counted(events, "event")}.`;
 }

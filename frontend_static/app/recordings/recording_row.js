@@ -54,12 +54,12 @@ export class RecordingRow {
   show(recording) {
     this.recording = recording;
     const name = nameOf(recording);
-    setText(this.name, name);
+    setText(this.name, recording.name || recording.scenario);
     this.name.title = name;
     const { text, tone } = stateWord(recording);
     setText(this.state, text);
     this.state.dataset.tone = tone;
-    setText(this.scenario, recording.scenario);
+    setText(this.scenario, recording.name === recording.scenario ? "" : recording.scenario);
     setText(this.started, startedWords(recording.started_at));
     setText(this.duration, durationWords(recording.duration_s));
     setText(this.size, sizeWords(recording.size_bytes));

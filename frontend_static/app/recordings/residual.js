@@ -1,7 +1,10 @@
 import { firstAtOrAfter } from "../session/telemetry_store.js";
 import { fetchSamples } from "./samples.js";
 
-const MOST_SAMPLES = 200_000; // of a span whose residual is drawn
+const MOST_SAMPLES = 100_000; // of a span whose residual is drawn
+const AT_ONCE = 15_000; // samples of one request
+const MOST_POINTS = 20_000; // that the server gives at once
+const PATIENCE_MS = 150;
 const PREFIX = "residual ";
 
 /**
@@ -63,15 +66,21 @@ export class Residual extends EventTarget {
       const seconds = Math.floor(MOST_SAMPLES * this.run.period);
       return this.#tell(null, `The residual is drawn of at most ${seconds} s: zoom in.`);
     }
-    this.timer = setTimeout(() => this.#fetch({ ...span, channels: this.channels, points: samples }), 150);
+    this.timer = setTimeout(() => this.#fetch(asked, span), PATIENCE_MS);
   }
 
-  async #fetch(asked) {
+  async #fetch(asked, { from_s, to_s }) {
+    const step = AT_ONCE * this.run.period;
+    const parts = [];
     try {
-      const [one, other] = await Promise.all([this.run.id, this.other].map((id) => fetchSamples(id, asked)));
-      this.#tell(differences(one, other, this.channels), "");
+      for (let begin = from_s; begin < to_s && asked === this.#asked; begin += step) {
+        const span = { from_s: begin, to_s: Math.min(to_s, begin + step), channels: this.channels, points: MOST_POINTS };
+        const [one, other] = await Promise.all([this.run.id, this.other].map((id) => fetchSamples(id, span)));
+        parts.push(differences(one, other, this.channels));
+      }
+      if (asked === this.#asked) this.#tell(joined(parts, this.channels), "");
     } catch (error) {
-      this.#tell(null, `The residual cannot be drawn: ${error.message}`);
+      if (asked === this.#asked) this.#tell(null, `The residual cannot be drawn: ${error.message}`);
     }
   }
 
@@ -94,6 +103,16 @@ function differences(one, other, channels) {
     return [channel, Float32Array.from(at, (near, i) => (near < 0 ? NaN : a[i] - b[near]))];
   });
   return { time: one.time, values: new Map(values) };
+}
+
+function joined(parts, channels) {
+  const length = parts.reduce((sum, { time }) => sum + time.length, 0);
+  const join = (arrays, into) => {
+    arrays.reduce((at, array) => (into.set(array, at), at + array.length), 0);
+    return into;
+  };
+  const values = channels.map((name) => [name, join(parts.map((part) => part.values.get(name)), new Float32Array(length))]);
+  return { time: join(parts.map(({ time }) => time), new Float64Array(length)), values: new Map(values) };
 }
 
 function extremes(times, values, start, end) {

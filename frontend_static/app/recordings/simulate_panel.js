@@ -3,6 +3,7 @@ import { element, setText } from "../element.js";
 import { displayUnit, significant } from "../quantity.js";
 import { addressOf } from "./samples.js";
 
+const FIRST = ["link_position", "motor_torque", "spring_torque"];
 const WAITS = "Waits for the tasks before it.";
 
 /**
@@ -17,6 +18,8 @@ export class SimulatePanel {
     this.progress = element("progress", { max: 1, hidden: true, "aria-label": "Progress of the simulation" });
     this.words = element("p", { class: "form-hint", role: "status" });
     this.table = element("dl", { class: "facts" });
+    this.others = element("dl", { class: "facts" });
+    this.more = element("details", { hidden: true }, element("summary", {}, "All channels"), this.others);
     this.root = element(
       "section",
       { class: "side-panel", "aria-label": "Simulation" },
@@ -25,6 +28,7 @@ export class SimulatePanel {
       this.progress,
       this.words,
       this.table,
+      this.more,
     );
     board.addEventListener("change", () => this.#show());
     board.addEventListener("result", ({ detail }) => detail.asked && done(detail.asked.recording, detail.result));
@@ -35,24 +39,30 @@ export class SimulatePanel {
     this.problem = "";
     this.say("");
     this.tell(null);
-    this.start.disabled = facts.origin === "simulation";
-    this.start.title = this.start.disabled ? "It is a simulation" : "Computed anew from the scenario and the changes made in it, and laid over the recording";
+    this.start.disabled = facts.origin !== "live" || !facts.scenario;
+    this.start.title = this.start.disabled
+      ? "Only a recording of the live session can be simulated: it holds its scenario"
+      : "Computed anew from the scenario and the changes made in it, and laid over the recording";
     this.#show();
   }
 
   /** Show RMS and peak of the residual of each channel. */
   tell(result) {
-    const lines = Object.entries(result?.residual ?? {});
+    const all = Object.entries(result?.residual ?? {});
+    const isFirst = ([channel]) => FIRST.includes(channel);
+    this.table.replaceChildren(...all.filter(isFirst).flatMap((line) => this.#line(line)));
+    this.others.replaceChildren(...all.filter((line) => !isFirst(line)).flatMap((line) => this.#line(line)));
+    this.more.hidden = all.length <= FIRST.length;
     const first = result?.first_difference_s;
     this.verdict = !result ? "" : first === null || first === undefined ? "The simulation is the same, sample by sample." : `They differ from ${significant(first)} s on. Residual, RMS and peak:`;
-    this.table.replaceChildren(
-      ...lines.flatMap(([channel, { rms, peak, unit }]) => {
-        const shown = displayUnit(unit);
-        const words = [rms, peak].map((value) => significant(value * shown.factor)).join(" · ");
-        return [element("dt", {}, this.facts.channels.find(({ name }) => name === channel)?.label ?? channel), element("dd", {}, `${words} ${shown.unit}`)];
-      }),
-    );
     this.#show();
+  }
+
+  #line([channel, { rms, peak, unit }]) {
+    const shown = displayUnit(unit);
+    const words = [rms, peak].map((value) => significant(value === null ? null : value * shown.factor)).join(" · ");
+    const label = this.facts.channels.find(({ name }) => name === channel)?.label ?? channel;
+    return [element("dt", { title: label }, label), element("dd", {}, `${words} ${shown.unit}`)];
   }
 
   /** A sentence about the residual's chart. */

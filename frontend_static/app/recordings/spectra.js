@@ -16,6 +16,7 @@ const CHANNELS = [
 const CHOSEN_FIRST = ["error", "motor_torque"];
 const PATIENCE_MS = 300;
 const DECADES = 9; // shown below the highest density
+const MOST_POINTS = 1200; // drawn of a density, evenly on a logarithmic axis
 const TIME_LIMIT_MS = 30_000;
 
 /** Amplitude spectral densities of chosen channels over the shown span, of the recording and of those over it. */
@@ -85,7 +86,7 @@ export class Spectra {
     try {
       const answers = await Promise.all(wanted.map((address) => address && this.#answer(address)));
       if (asked !== this.#asked) return;
-      this.#say("");
+      this.#say(answers.map((answer) => answer?.note).find(Boolean) ?? "");
       this.#draw(channels, answers, runs);
     } catch (refusal) {
       if (asked === this.#asked) this.#say(refusal.message);
@@ -118,8 +119,9 @@ export class Spectra {
         if (!density) return [];
         const name = i === 0 ? "" : `${runs[i].label}: `;
         const rms = `RMS ${significant(answer.rms[channel] * factor)} ${unit}`;
-        const amplitudes = density.map((value) => (value > 0 ? Math.sqrt(value) * factor : NaN));
-        return [{ label: name + rms, colour: `series-${colour}`, dash: runs[i].dash, alpha: runs[i].alpha, x: answer.frequencies_hz, y: amplitudes }];
+        const look = { label: name + rms, colour: `series-${colour}`, dash: runs[i].dash, alpha: runs[i].alpha };
+        const [x, highest] = highestOf(answer.frequencies_hz, density);
+        return [{ ...look, x, y: highest.map((value) => (value > 0 ? Math.sqrt(value) * factor : NaN)) }];
       });
       const most = Math.max(...curves.flatMap(({ y }) => y.filter(Number.isFinite)));
       Object.assign(chart.layout, { clip: [most * 10 ** -DECADES, most * 2], lowest: curves[0]?.x.find((at) => at > 0) ?? 0.1 });
@@ -137,4 +139,18 @@ export class Spectra {
     setText(this.problem, text);
     this.problem.hidden = text === "";
   }
+}
+
+/** Where a curve has more points than a plot can show, the highest of those that share a place. @returns {[number[], number[]]} */
+function highestOf(frequencies, density) {
+  const first = frequencies.findIndex((at) => at > 0);
+  const decades = Math.log10(frequencies.at(-1) / frequencies[first]);
+  const [x, y] = [[], []];
+  let place = -1;
+  for (let i = first; i < frequencies.length; i += 1) {
+    const at = Math.floor((Math.log10(frequencies[i] / frequencies[first]) / decades) * MOST_POINTS);
+    if (at !== place) [x[x.length], y[y.length], place] = [frequencies[i], density[i], at];
+    else if (density[i] > y.at(-1)) [x[x.length - 1], y[y.length - 1]] = [frequencies[i], density[i]];
+  }
+  return [x, y];
 }

@@ -6,6 +6,7 @@ const CHANNELS = [
   ["link_position", "the link’s path"],
   ["reference", "its reference"],
 ];
+const LOADS = "The live session starts again at t = 0 with this recording’s scenario";
 
 /** What a recording is good for in the live session: its motion as a reference, its scenario. */
 export class UsePanel {
@@ -15,7 +16,7 @@ export class UsePanel {
     this.shown = shown;
     this.channel = element("select", { "aria-label": "Motion to follow" }, ...CHANNELS.map(([name, text]) => new Option(text, name)));
     this.reference = this.#button("Use as reference", "The live session then follows what is shown of this motion", () => this.#follow());
-    this.scenario = this.#button("Load its scenario", "The live session starts again at t = 0 with this recording’s scenario", () => this.#load());
+    this.scenario = this.#button("Load its scenario", LOADS, () => this.#load());
     this.words = element("p", { class: "form-hint", role: "status", hidden: true });
     this.root = element(
       "section",
@@ -31,6 +32,8 @@ export class UsePanel {
     const names = new Set(facts.channels.map(({ name }) => name));
     for (const option of this.channel.options) option.disabled = !names.has(option.value);
     this.facts = facts;
+    this.scenario.disabled = !facts.scenario;
+    this.scenario.title = facts.scenario ? LOADS : "It holds no scenario";
     this.#say("");
   }
 
@@ -52,7 +55,7 @@ export class UsePanel {
     button.addEventListener("click", async () => {
       button.disabled = true;
       this.#say(await act().catch((refusal) => refusal.message));
-      button.disabled = false;
+      button.disabled = button === this.scenario && !this.facts.scenario;
     });
     return button;
   }

@@ -35,9 +35,10 @@ export function startedWords(iso) {
   return `${when.toLocaleDateString([], { day: "numeric", month: "short", year })} ${time}`;
 }
 
-/** @returns {string} what the recording is called */
+/** @returns {string} what the recording is called, and when it was made if it has no name of its own */
 export function nameOf({ name, scenario, started_at }) {
-  return name || `${scenario} ${startedWords(started_at)}`;
+  const title = scenario?.name ?? scenario;
+  return name && name !== title ? name : `${title || "recording"}, ${startedWords(started_at)}`;
 }
 
 /** @returns {{text: string, tone: string}} the small word beside a recording, "" for one that is as usual */
@@ -46,8 +47,9 @@ export function stateWord({ state, origin }) {
   return { text, tone: state === "damaged" ? "warning" : state === "recording" ? "active" : "" };
 }
 
-/** @returns {string} "3 events", "1 fault" */
+/** @returns {string} "3 events", "1 fault"; "–" while it is not known */
 export function counted(number, word) {
+  if (number === null || number === undefined) return "–";
   return `${number} ${word}${number === 1 ? "" : "s"}`;
 }
 
