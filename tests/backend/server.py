@@ -15,7 +15,7 @@ import httpx
 START_LIMIT_S = 120.0  # the kernels may have to be compiled first
 END_LIMIT_S = 20.0
 LOOK_AGAIN_S = 0.02
-WORKERS = {8: "analysis", 10: "simulation", 12: "recordings", 15: "tasks"}
+WORKERS = {8: "analysis", 10: "simulation", 12: "recordings", 13: "archive", 15: "tasks"}
 """Workers by their niceness (backend.compute.pool)."""
 Found = TypeVar("Found")
 
