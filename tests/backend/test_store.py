@@ -82,7 +82,9 @@ def test_a_stale_edit_changes_nothing_and_names_the_revision_it_knew(database: D
 
 def test_a_change_of_what_exists_needs_a_revision(database: Database) -> None:
     put(database, NAME, draft(1))
-    with pytest.raises(Problem, match='at revision 1. Say which revision you change, with If-Match: "1-1"') as problem:
+    with pytest.raises(
+        Problem, match=r'at revision 1\. Say which revision you change, with If-Match: "1-1"'
+    ) as problem:
         put(database, NAME, draft(2))
     assert problem.value.status == 428
     assert numbers(database) == [1]
@@ -139,7 +141,15 @@ def test_a_name_that_another_has_and_a_version_that_is_not_there_are_refused_who
 
 @pytest.mark.parametrize(
     ("search", "found"),
-    [("SOFT", ["c", "a"]), ("soft 2", ["c"]), ("%", ["d 100%"]), ("_", []), ("heavier", ["b"]), ("nominal", ["c"]), ("", None)],
+    [
+        ("SOFT", ["c", "a"]),
+        ("soft 2", ["c"]),
+        ("%", ["d 100%"]),
+        ("_", []),
+        ("heavier", ["b"]),
+        ("nominal", ["c"]),
+        ("", None),
+    ],
 )
 def test_a_search_finds_every_word_wherever_it_stands(database: Database, search: str, found: list[str] | None) -> None:
     made = [("a", Draft("{}", "sum 1", None, "me", tags=("Soft",))), ("b", Draft("{}", "sum", None, "me")),
