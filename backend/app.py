@@ -59,7 +59,7 @@ def create_app(settings: Settings) -> FastAPI:
         set_niceness(WEB_NICENESS)
         session.start()
         recorder.start(session.ring_name, session.tell, session.note_recording, library.added)
-        library.start(session.tell, session.note_recording)
+        library.start(session.recordings_changed, session.note_recording)
         if settings.scene:
             scene.start()
         gc.collect()
