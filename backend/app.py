@@ -23,6 +23,7 @@ from backend.api.resources import resources
 from backend.compute.pool import Pool
 from backend.processes import set_niceness
 from backend.recordings.catalogue import Catalogue
+from backend.recordings.excerpts import Excerpts
 from backend.recordings.library import Library
 from backend.recordings.recorder import Recorder
 from backend.scene.process import SceneProcess
@@ -44,7 +45,7 @@ def create_app(settings: Settings) -> FastAPI:
     pool = Pool()
     tasks = Tasks(pool.tasks)
     recorder = Recorder(settings)
-    session = Session(settings, pool, database, recorder)
+    session = Session(settings, pool, database, recorder, recorder, Excerpts(database))
     library = Library(settings, Catalogue(database), recorder, pool.recordings)
     scene = SceneProcess(session.ring_name)
     answers = tempfile.TemporaryDirectory(prefix="vssea-")

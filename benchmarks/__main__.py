@@ -15,6 +15,7 @@ BENCHMARKS = {
     "start": ("benchmarks.start", "from starting the server to something moving on the page"),
     "latency": ("benchmarks.latency", "slider to changed torque, STOP to zero torque"),
     "kills": ("benchmarks.kills", "SIGKILLs of the recording process: unreadable files, tail lost"),
+    "recorder": ("benchmarks.recorder", "lateness of the loop with the recorder on and off"),
     "hour": ("benchmarks.hour", "one hour of recording: size, memory, samples lost, time"),
     "loop": ("benchmarks.loop", "the 1 kHz loop for two minutes: lateness, overruns, lost samples, processor time"),
 }

@@ -22,7 +22,10 @@ def find_postgres() -> Path | None:
     if not _may_run():
         return None
     found = shutil.which("postgres")
-    folders = [*sorted(Path("/usr/lib/postgresql").glob("*/bin"), reverse=True), *([Path(found).resolve().parent] if found else [])]
+    folders = [
+        *sorted(Path("/usr/lib/postgresql").glob("*/bin"), reverse=True),
+        *([Path(found).resolve().parent] if found else []),
+    ]
     return next((folder for folder in folders if all((folder / program).exists() for program in PROGRAMS)), None)
 
 
@@ -31,7 +34,7 @@ class PostgresServer:
 
     def __init__(self, programs: Path) -> None:
         self._programs = programs
-        self.folder = Path(tempfile.mkdtemp(prefix="vssea-postgres-", dir="/tmp"))  # noqa: S108 - a socket's path is short
+        self.folder = Path(tempfile.mkdtemp(prefix="vssea-postgres-", dir="/tmp"))
         if os.getuid() == 0:
             shutil.chown(self.folder, USER)
         self._run("initdb", "--auth=trust", "--no-sync", f"--username={USER}", "-D", str(self.folder / "data"))
@@ -74,7 +77,11 @@ class PostgresServer:
 
     def _run(self, program: str, *arguments: str) -> None:
         subprocess.run(
-            [self._programs / program, *arguments], check=True, capture_output=True, preexec_fn=_unprivileged(), cwd=self.folder
+            [self._programs / program, *arguments],
+            check=True,
+            capture_output=True,
+            preexec_fn=_unprivileged(),
+            cwd=self.folder,
         )
 
 

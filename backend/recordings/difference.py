@@ -2,9 +2,9 @@
 
 from typing import Any
 
+from backend.differences import told
 from backend.recordings.reader import Recording
 from backend.recordings.timeline import known_scenario
-from backend.words.changes import difference_entries
 from vssea_core.scenario import Scenario
 
 ABOUT = ("name", "description")
@@ -18,5 +18,5 @@ def difference(recording: Recording, at_s: float | None, against: Recording | Sc
     """
     before = known_scenario(recording, recording.span[1] if at_s is None else at_s)
     after = known_scenario(against, against.span[1]) if isinstance(against, Recording) else against
-    changes = [entry for entry in difference_entries(before, after) if entry["path"] not in ABOUT]
+    changes = [each.document() for each in told(before, after) if each.path not in ABOUT]
     return {"changes": changes, "same": not changes}

@@ -11,6 +11,7 @@ from backend.recordings import csv_import as imports
 from backend.recordings import exports
 from backend.recordings.details import details, row_at
 from backend.recordings.difference import difference
+from backend.recordings.folder import recover as finish
 from backend.recordings.reader import Recording
 from backend.recordings.recorded_reference import recorded_reference
 from backend.recordings.replayed_scenario import Replayed, replayed_scenario
@@ -34,6 +35,7 @@ __all__ = [
     "plan_replay",
     "pose_at",
     "preview_csv",
+    "recover",
     "reference_of",
     "report_of",
     "samples_of",
@@ -56,6 +58,11 @@ def opened(path: str) -> Recording:
     """Return the recording at a path; its records are looked through again only if the file has changed."""
     status = Path(path).stat()
     return _opened(path, status.st_ino, status.st_size, status.st_mtime_ns)
+
+
+def recover(path: str) -> bool:
+    """Finish a recording that its writer could not; return whether there was anything to do."""
+    return finish(Path(path))
 
 
 def summarise(path: str, cache: str | None) -> Document:

@@ -64,7 +64,9 @@ def test_every_route_is_in_the_protocol(http: httpx.Client) -> None:
     assert listed == served
 
 
-@pytest.mark.parametrize("name", ["hello", "state", "document", "event", "margins", "history", "missed", "reply"])
+@pytest.mark.parametrize(
+    "name", ["hello", "state", "document", "event", "margins", "history", "pins", "trigger", "missed", "reply"]
+)
 def test_every_message_is_in_the_protocol(name: str) -> None:
     assert f'{{"type": "{name}"' in PROTOCOL
 

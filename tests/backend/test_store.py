@@ -139,7 +139,15 @@ def test_a_name_that_another_has_and_a_version_that_is_not_there_are_refused_who
 
 @pytest.mark.parametrize(
     ("search", "found"),
-    [("SOFT", ["c", "a"]), ("soft 2", ["c"]), ("%", ["d 100%"]), ("_", []), ("heavier", ["b"]), ("nominal", ["c"]), ("", None)],
+    [
+        ("SOFT", ["c", "a"]),
+        ("soft 2", ["c"]),
+        ("%", ["d 100%"]),
+        ("_", []),
+        ("heavier", ["b"]),
+        ("nominal", ["c"]),
+        ("", None),
+    ],
 )
 def test_a_search_finds_every_word_wherever_it_stands(database: Database, search: str, found: list[str] | None) -> None:
     made = [("a", Draft("{}", "sum 1", None, "me", tags=("Soft",))), ("b", Draft("{}", "sum", None, "me")),
