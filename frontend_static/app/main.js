@@ -80,7 +80,7 @@ bindKeys({
   showKeys: () => keysDialog.show(),
 });
 
-window.vssea = { session, store: session.store, latest: (name) => session.store.latest(name) };
+window.vssea = { session, recordings, store: session.store, latest: (name) => session.store.latest(name) };
 
 session.start();
 buildParameters();
