@@ -103,6 +103,11 @@ export class Chart {
     this.legend.scaleReset.hidden = !this.ranges.left.isManual && !this.ranges.right?.isManual;
   }
 
+  /** Scale at once to what is drawn next, but for what the wheel has scaled. */
+  fitScales() {
+    for (const range of Object.values(this.ranges)) if (range) range.isFresh = true;
+  }
+
   freshScales() {
     for (const range of Object.values(this.ranges)) range?.reset();
   }

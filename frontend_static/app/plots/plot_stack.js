@@ -46,6 +46,7 @@ export class PlotStack extends EventTarget {
     source.addEventListener("change", () => this.redraw());
     source.addEventListener("cleared", () => (source.isLive && this.timeWindow.isHeld) || this.#restart());
     theme.addEventListener("change", () => this.redraw());
+    if (!source.isLive) this.timeWindow.addEventListener("change", () => this.#rescale());
     new ResizeObserver(() => this.#resize()).observe(this.area);
     requestAnimationFrame((now) => this.#frame(now));
   }
@@ -58,7 +59,7 @@ export class PlotStack extends EventTarget {
   /** Draw other charts from now on. */
   show(layouts) {
     this.layouts = layouts;
-    if (this.#charts.length) this.#build();
+    if (this.source.channels.size) this.#build();
   }
 
   redraw() {
@@ -106,6 +107,11 @@ export class PlotStack extends EventTarget {
     if (sideways) return this.timeWindow.pan((Math.sign(sideways) * (to - from)) / 10);
     const ratio = event.deltaY > 0 ? ZOOM_STEP : 1 / ZOOM_STEP;
     this.timeWindow.zoom(about + (from - about) * ratio, about + (to - about) * ratio);
+  }
+
+  /** What stands still is scaled to what is shown of it. */
+  #rescale() {
+    for (const chart of this.#charts) chart.fitScales();
   }
 
   #restart() {

@@ -21,7 +21,7 @@ export class ImportDialog {
   constructor(session, imported) {
     this.session = session;
     this.imported = imported;
-    this.file = element("input", { type: "file", accept: ".csv,text/csv,text/plain", class: "unseen", "aria-label": "CSV file", change: () => this.#read() });
+    this.file = element("input", { type: "file", accept: ".csv,text/csv,text/plain", hidden: true, "aria-label": "CSV file", change: () => this.#read() });
     this.name = element("input", { type: "text", "aria-label": "Name of the recording", autocomplete: "off" });
     this.summary = element("p", { role: "status" });
     this.problem = element("p", { class: "form-problem", role: "status", hidden: true });

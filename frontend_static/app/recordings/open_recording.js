@@ -99,7 +99,7 @@ export class OpenRecording {
       if (this.opening !== id) return;
       this.#show(facts);
       this.board.refresh();
-      for (const other of overlays) await this.comparison.add(other);
+      for (const other of overlays) await this.comparison.add(other).catch((refusal) => this.overlays.say(refusal.message));
     } catch (refusal) {
       if (this.opening === id) this.#say(refusal.message);
     }
@@ -137,9 +137,9 @@ export class OpenRecording {
       if (!run.problem) this.#leaveOut(charts);
       if (!this.replay.isPlaying) this.#describe();
     });
-    this.#say("");
-    this.stack.show(charts);
+    this.#say(facts.samples === 0 ? "It holds no samples." : "");
     this.source.open(run);
+    this.stack.show(charts);
     this.comparison.open(facts, channels);
     this.scene.open(facts.id);
     this.use.open(facts);

@@ -42,7 +42,7 @@ export class OverlayPanel {
       const { recordings } = await rest("GET", `/api/recordings?limit=${OFFERED}`);
       this.#fill(recordings);
     } catch (refusal) {
-      this.#say(refusal.message);
+      this.say(refusal.message);
     }
   }
 
@@ -64,8 +64,8 @@ export class OverlayPanel {
     const id = this.add.value;
     this.add.value = "";
     if (!id) return;
-    this.#say("");
-    await this.comparison.add(id).catch((refusal) => this.#say(refusal.message));
+    this.say("");
+    await this.comparison.add(id).catch((refusal) => this.say(refusal.message));
   }
 
   #show() {
@@ -84,7 +84,8 @@ export class OverlayPanel {
     arrange(this.list, overlays.map(({ key }) => this.#lines.get(key).root));
   }
 
-  #say(text) {
+  /** Say why something could not be laid over it. */
+  say(text) {
     setText(this.problem, text);
     this.problem.hidden = text === "";
   }

@@ -40,8 +40,8 @@ export class ReplayScene {
   describe(time, picture) {
     const at = Math.min(firstAtOrAfter(picture.time, time), picture.time.length - 1);
     const value = (name) => (at < 0 ? NaN : picture.column(name)[at]);
-    const angle = `link ${fixed(value("link_position"), 2)} rad`;
-    setText(this.caption, `${angle} · ${sceneCaption(value("stiffness"), value("deflection"))}`);
+    const angle = `t ${fixed(time, 2)} s · link ${fixed(value("link_position"), 2)} rad`;
+    setText(this.caption, `${angle}\n${sceneCaption(value("stiffness"), value("deflection"))}`);
   }
 
   async #send() {

@@ -38,7 +38,7 @@ export class Views extends EventTarget {
   #read() {
     const [view, path] = location.hash.slice(1).split("/");
     const known = this.tabs.some((tab) => tab.dataset.view === view);
-    if (known) this.#paths.set(view, decodeURIComponent(path ?? ""));
+    if (known) this.#paths.set(view, decoded(path ?? ""));
     this.#mark(known ? view : this.tabs[0].dataset.view);
   }
 
@@ -51,5 +51,13 @@ export class Views extends EventTarget {
       if (isShown) document.title = `VSSEA · ${tab.textContent}`;
     }
     this.dispatchEvent(new Event("change"));
+  }
+}
+
+function decoded(path) {
+  try {
+    return decodeURIComponent(path);
+  } catch {
+    return path; // typed by hand
   }
 }
