@@ -16,6 +16,10 @@ BENCHMARKS = {
     "latency": ("benchmarks.latency", "slider to changed torque, STOP to zero torque"),
     "kills": ("benchmarks.kills", "SIGKILLs of the recording process: unreadable files, tail lost"),
     "hour": ("benchmarks.hour", "one hour of recording: size, memory, samples lost, time"),
+    "recordings": (
+        "benchmarks.recordings",
+        "an hour's recording: written, opened, drawn, exported, beside the public mcap reader",
+    ),
     "loop": ("benchmarks.loop", "the 1 kHz loop for two minutes: lateness, overruns, lost samples, processor time"),
 }
 
