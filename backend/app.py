@@ -25,6 +25,7 @@ from backend.api.resources import resources
 from backend.compute.pool import Pool
 from backend.processes import set_niceness
 from backend.recordings.catalogue import Catalogue
+from backend.recordings.excerpts import Excerpts
 from backend.recordings.library import Library
 from backend.recordings.recorder import Recorder
 from backend.scene.process import SceneProcess
@@ -47,7 +48,7 @@ def create_app(settings: Settings) -> FastAPI:
     pool = Pool()
     tasks = Tasks(pool.tasks)
     recorder = Recorder(settings)
-    session = Session(settings, pool, database, recorder)
+    session = Session(settings, pool, database, recorder, recorder, Excerpts(database))
     library = Library(settings, Catalogue(database), recorder, pool.archive)
     scene = SceneProcess(session.ring_name)
     replay = ReplayScene()
@@ -58,7 +59,7 @@ def create_app(settings: Settings) -> FastAPI:
         set_niceness(WEB_NICENESS)
         session.start()
         recorder.start(session.ring_name, session.tell, session.note_recording, library.added)
-        library.start(session.tell, session.note_recording)
+        library.start(session.recordings_changed, session.note_recording)
         if settings.scene:
             scene.start()
         gc.collect()

@@ -36,17 +36,14 @@ def serve(
 ) -> None:
     """Start the dashboard."""
     import uvicorn
-    from sqlalchemy.exc import DBAPIError
 
     from backend.app import create_app
 
     settings = _settings(host=host, port=port, scenario=scenario)
     try:
         application = create_app(settings)
-    except (OSError, DBAPIError) as error:
-        _refuse(
-            f"{settings.data_dir} cannot keep presets: {getattr(error, 'orig', error)}; set VSSEA_DATA_DIR to a folder of your own"
-        )
+    except OSError as error:
+        _refuse(f"{settings.data_dir} cannot be the data folder: {error}; set VSSEA_DATA_DIR to a folder of your own")
     shown = f"[{settings.host}]" if ":" in settings.host else settings.host
     typer.echo(f"VSSEA on http://{shown}:{settings.port}/  (Ctrl+C ends it)")
     uvicorn.run(

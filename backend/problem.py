@@ -29,6 +29,9 @@ class Problem(Exception):
     members: dict[str, Any] = field(default_factory=dict)
     """What this kind of problem has beyond the members that all have."""
 
+    def __str__(self) -> str:
+        return self.detail
+
     def document(self) -> dict[str, Any]:
         """Return it as a problem details document."""
         return {

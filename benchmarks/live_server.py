@@ -54,7 +54,7 @@ class Server:
 
 
 @contextmanager
-def running_server(probed: bool = False) -> Iterator[Server]:
+def running_server(probed: bool = False, **settings: str) -> Iterator[Server]:
     """Start a server on a free port with an empty data folder, wait until its session runs, and end it."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
@@ -63,7 +63,7 @@ def running_server(probed: bool = False) -> Iterator[Server]:
         ["-m", "benchmarks.probed_server", str(port)] if probed else ["-m", "backend.cli", "serve", "--port", str(port)]
     )
     with tempfile.TemporaryDirectory() as folder:
-        environment = os.environ | {"VSSEA_DATA_DIR": folder}
+        environment = os.environ | {"VSSEA_DATA_DIR": folder} | settings
         process = subprocess.Popen(
             [sys.executable, *command], env=environment, cwd=Path(__file__).parent.parent, stdout=subprocess.DEVNULL
         )

@@ -74,8 +74,8 @@ class Page:
             "type": "hello", "protocol": 1, "run": session.run_id, "you": self.name, "version": __version__,
             "channels": [channel._asdict() for channel in CHANNELS], "snapshot": session.snapshot(),
             "document": session.document(), "events": session.log.last(100), "margins": session.margins.newest,
-            "recorder": self._recorder.document(),
-            **session.history.greeting(),
+            "recorder": self._recorder.document(), **session.history.greeting(),
+            "pins": session.pins.message()["pins"], "trigger": session.trigger.message(),
         }  # fmt: skip
         with suppress(WebSocketDisconnect, RuntimeError, TimeoutError):
             await self._send(json.dumps(hello))

@@ -90,6 +90,14 @@ class Recorder:
         """Return the id of the recording that is being written."""
         return self._wrote.recording if self._link is not None else None
 
+    def of_run(self, epoch: int) -> str | None:
+        """Return the id of the recording that holds the newest samples of a run, None if it is not recorded."""
+        run = self._runs.get(epoch)
+        if run is None or self._trouble is not None or not self._settings.recording:
+            return None
+        present, first = self.present(), run.head["id"]
+        return present if _is_part_of(present, first) else first
+
     def progress(self) -> Wrote:
         """Return how far the writer is."""
         return self._wrote

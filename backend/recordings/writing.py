@@ -25,6 +25,8 @@ SHORTEST_RUN_S = 0.25
 BEGIN_LIMIT_S = 5.0
 """So long samples wait for the word of what run they belong to; the ring holds a minute."""
 SYNC_EVERY_S = 1.0
+LATE_S = 1.5
+"""So long the recording of a run that is over stays open: an event is told once it has rested."""
 Free = Callable[[Path], int]
 Sync = Callable[[int, bool], None]
 
@@ -51,6 +53,8 @@ class Writing:
         self._tell, self._free, self._sync = tell, free, sync
         self._file: RecordingFile | None = None
         self._run: Begin | None = None
+        self._over: tuple[RecordingFile, int, float] | None = None  # of the run before: its file, epoch, open until
+        self._now_s = 0.0
         self._scenario: dict[str, Any] = {}
         self._part = 1
         self._begins: dict[int, Begin] = {}
@@ -92,12 +96,15 @@ class Writing:
 
     def turn(self, now_s: float) -> None:
         """Write all that is new. A disk that refuses stops the recording, and a later turn goes on when it can."""
+        self._now_s = now_s
         try:
             why = self._held or self._lacking_room()
             if why is None:
                 self._stop_is(None)
                 self._write_samples(now_s)
                 self._write_notes()
+                if self._over is not None and now_s >= self._over[2]:
+                    self._end_over()
                 self._sync_now_and_then(now_s)
             else:
                 self._leave(why)
@@ -122,10 +129,13 @@ class Writing:
             self._sync(self._file.descriptor, False)
 
     def end(self, reason: str) -> None:
-        """Finish the present recording."""
+        """Finish what is open."""
+        self._end_over()
         file, self._file = self._file, None
-        if file is None:
-            return
+        if file is not None:
+            self._finish(file, reason)
+
+    def _finish(self, file: RecordingFile, reason: str) -> None:
         descriptor = os.dup(file.descriptor)
         try:
             file.finish(reason=reason, lost=str(self._lost))
@@ -134,10 +144,16 @@ class Writing:
             os.close(descriptor)
         self._tell(Ended(file.head["id"], str(file.path)))
 
+    def _end_over(self) -> None:
+        over, self._over = self._over, None
+        if over is not None:
+            self._finish(over[0], "another run began")
+
     def abandon(self) -> None:
         """Leave the present recording unfinished, as the end of the process does."""
-        if self._file is not None:
-            self._file.close()
+        for file in (self._file, self._over and self._over[0]):
+            if file is not None:
+                file.close()
 
     # ---- samples
 
@@ -161,7 +177,7 @@ class Writing:
         times, start = samples[:, INDEX["time"]], 0
         while start < len(samples) and self._run is not None and self._file is not None:
             if times[start] >= self._part * self._part_s:
-                self.end(f"goes on in part {self._part + 1}")
+                self._finish(self._file, f"goes on in part {self._part + 1}")
                 self._create(self._run, samples[start:], int(times[start] // self._part_s) + 1)
                 continue
             border = int(np.searchsorted(times, self._part * self._part_s))
@@ -182,7 +198,9 @@ class Writing:
             )
         self._waiting_since = None
         self._write_notes()
-        self.end("another run began")
+        self._end_over()
+        if self._file is not None and self._run is not None:
+            self._over, self._file = (self._file, self._run.epoch, self._now_s + LATE_S), None
         self._begins = {number: kept for number, kept in self._begins.items() if number >= epoch}
         if self._run is None or self._run.epoch != epoch:
             self._scenario, self._lost = dict(begin.scenario), 0
@@ -209,7 +227,7 @@ class Writing:
     # ---- what was told
 
     def _write_notes(self) -> None:
-        """Write what belongs to the present run; what belongs to a later one waits for its samples."""
+        """Write what belongs to the present run or the one before; what belongs to a later one waits for its samples."""
         epoch = self._run.epoch if self._run is not None else 0
         due = [note for note in self._notes if note.epoch <= epoch]
         self._notes = [note for note in self._notes if note.epoch > epoch]
@@ -217,8 +235,10 @@ class Writing:
             content = note.document.content
             if note.document.channel == CHANGES and note.epoch == epoch:
                 self._scenario[content["part"]] = content["document"]
-        if due and self._file is not None:
-            self._file.append_documents([note.document for note in due])
+        for file, number in ((self._file, epoch), self._over[:2] if self._over is not None else (None, 0)):
+            told = [note.document for note in due if note.epoch == number]
+            if told and file is not None:
+                file.append_documents(told)
 
     # ---- trouble
 
@@ -234,10 +254,13 @@ class Writing:
 
     def _leave(self, why: str) -> None:
         """Stop recording without waiting for anything; samples pass by until there is room again."""
-        file = self._file
-        if file is not None:
+        files = [self._file, self._over and self._over[0]]
+        self._over = None
+        for file in files:
+            if file is None:
+                continue
             try:
-                self.end(why)
+                self._finish(file, why)
             except OSError:
                 file.close()  # unfinished: the next start finishes it
         self._file = None

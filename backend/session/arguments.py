@@ -63,6 +63,30 @@ class EntryNumber(Arguments):
     number: int = Field(ge=1, strict=True, description="Number of the entry.")
 
 
+Label = Field(None, min_length=1, max_length=200, description="What to call it.")
+
+
+class PinnedSpan(Arguments):
+    """How much of the present run to pin."""
+
+    seconds: float = Field(10.0, ge=0.1, le=60.0, strict=True, description="Length of the span.")
+    to_s: float | None = Field(None, ge=0.0, strict=True, description="Where it ends in this run; without it, now.")
+    label: str | None = Label
+
+
+class ExcerptNumber(Arguments):
+    """A pinned run, or what a trigger captured."""
+
+    id: int = Field(ge=1, strict=True, description="Its number.")
+
+
+class ExcerptChange(ExcerptNumber):
+    """Another label, or whether it is shown."""
+
+    label: str | None = Label
+    shown: bool | None = Field(None, strict=True)
+
+
 class Loading(Arguments):
     """Which scenario to load: a ready one by name, or a whole document."""
 

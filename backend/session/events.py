@@ -18,6 +18,8 @@ Kind = Literal[
     "scenario",
     "sequence",
     "link",
+    "pin",
+    "trigger",
     "recording",
 ]
 Severity = Literal["info", "warning", "fault"]

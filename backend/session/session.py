@@ -15,10 +15,13 @@ from backend.problem import Problem, from_validation
 from backend.session.arguments import (
     Applying,
     EntryNumber,
+    ExcerptChange,
+    ExcerptNumber,
     Loading,
     Named,
     Nothing,
     Pace,
+    PinnedSpan,
     Samples,
     SavePoint,
     Saving,
@@ -28,6 +31,7 @@ from backend.session.control_link import ControlLink
 from backend.session.control_reports import ControlReports
 from backend.session.disturbance_watch import DisturbanceWatch
 from backend.session.events import Event, EventLog, Kind, Severity
+from backend.session.excerpt import ExcerptsInMemory, ExcerptStore, NoRecordings, Recordings
 from backend.session.health import Health
 from backend.session.history_commands import HistoryCommands
 from backend.session.journal import Journal, Silent, Told, Unharming, wall_time
@@ -35,10 +39,13 @@ from backend.session.kept_run import KeptRun
 from backend.session.limit_watch import LimitWatch
 from backend.session.live_margins import LiveMargins
 from backend.session.part_commands import PartCommands
+from backend.session.pins import Pins
 from backend.session.preset_commands import PresetCommands
 from backend.session.run_commands import RunCommands
 from backend.session.running_scenario import RunningScenario
 from backend.session.status import Status
+from backend.session.trigger import Trigger
+from backend.session.trigger_source import Arming
 from backend.settings import Settings
 from backend.store.database import Database
 from backend.telemetry.ring import Ring, RingReader
@@ -57,7 +64,15 @@ Message = dict[str, Any]
 class Session:
     """One live session on a simulated rig."""
 
-    def __init__(self, settings: Settings, pool: Pool, database: Database, journal: Journal | None = None) -> None:
+    def __init__(
+        self,
+        settings: Settings,
+        pool: Pool,
+        database: Database,
+        journal: Journal | None = None,
+        recordings: Recordings | None = None,
+        excerpts: ExcerptStore | None = None,
+    ) -> None:
         self.settings, self._pool = settings, pool
         self.design = pool.design
         self.journal = Unharming(journal or Silent())
@@ -82,6 +97,8 @@ class Session:
         self.presets = PresetCommands(database, self)
         self._kept = KeptRun(self.presets.presets, self)
         self.history = HistoryCommands(self)
+        self.pins = Pins(self, recordings or NoRecordings(), excerpts or ExcerptsInMemory())
+        self.trigger = Trigger(self)
         self._commands: dict[str, tuple[type[BaseModel], Callable[[Any, str], Awaitable[Message]]]] = {
             "tune": (Changes, self.parts.tune),
             "set_reference": (Changes, self.parts.set_reference),
@@ -98,6 +115,11 @@ class Session:
             "redo": (Nothing, self.history.redo),
             "save_point": (SavePoint, self.history.save_point),
             "return_to": (EntryNumber, self.history.return_to),
+            "pin": (PinnedSpan, self.pins.pin),
+            "change_pin": (ExcerptChange, self.pins.change),
+            "unpin": (ExcerptNumber, self.pins.unpin),
+            "arm_trigger": (Arming, self.trigger.arm),
+            "disarm_trigger": (Nothing, self.trigger.disarm),
             "save_preset": (Saving, self.presets.save),
             "apply_preset": (Applying, self.presets.apply),
             "delete_preset": (Named, self.presets.delete),
@@ -119,6 +141,7 @@ class Session:
         """Start the control process and the workers in the background; the state says when they are ready."""
         self.spawn(self._begin())
         self.spawn(self._warm_workers())
+        self.spawn(self.pins.load())
         self.spawn(self._watch())
 
     async def close(self) -> None:
@@ -178,6 +201,7 @@ class Session:
                 self.log.add("limit", sentence, "rig", epoch, time_s, "warning")
             for epoch, time_s, sentence in self._loads.passed(self.scenario.disturbances):
                 self.log.add("disturbance", sentence, "scenario", epoch, time_s)
+            self.trigger.watch()
             if turn % STATE_EVERY == 0 and self.listeners:
                 self.tell_state()
 
@@ -223,7 +247,13 @@ class Session:
 
     def _tell_event(self, event: Event) -> None:
         self.journal.event(event)
+        self.trigger.hear(event)
         self.tell({"type": "event", "event": event.document()})
+
+    def recordings_changed(self, message: Message) -> None:
+        """Tell every page; what was pinned of a recording that is no more goes with it."""
+        self.tell(message)
+        self.spawn(self.pins.load())
 
     def note_recording(self, sentence: str, is_trouble: bool) -> None:
         """Log an event of the recorder."""

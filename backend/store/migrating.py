@@ -1,5 +1,6 @@
 """Bringing a database to the tables of this version: told apart by its revision, migrated in one transaction, a copy kept."""
 
+import os
 import threading
 from contextlib import closing
 from pathlib import Path
@@ -54,12 +55,13 @@ def keep_copy(engine: sa.Engine, revision: str) -> Path | None:
     copy = file.with_name(f"{file.name}.before-{following}")
     if copy.exists():
         return copy
-    partial = copy.with_name(copy.name + ".partial")
+    partial = copy.with_name(f"{copy.name}.{os.getpid()}-{threading.get_ident()}")
     partial.unlink(missing_ok=True)
     try:
         with closing(engine.raw_connection()) as connection:  # outside of any transaction
             connection.cursor().execute("VACUUM INTO ?", (str(partial),))
-        partial.rename(copy)
+        if not copy.exists():  # else another process was first, and may have migrated before this copy was made
+            partial.rename(copy)
     finally:
         partial.unlink(missing_ok=True)
     return copy

@@ -10,15 +10,17 @@ export const KEYS = [
     text: "Stop: zero motor torque at once. Also while typing.",
     whileTyping: true,
   },
-  { key: " ", shown: "Space", does: "pauseOrResume", text: "Pause or resume" },
-  { key: ".", shown: ".", does: "step", text: "Step one sample, while paused" },
+  { key: " ", shown: "Space", does: "pauseOrResume", text: "Pause or resume; with a recording open, play or pause its replay" },
+  { key: ".", shown: ".", does: "step", text: "Step one sample, while paused; with a recording open, one sample on" },
   { key: "f", shown: "F", does: "freeze", text: "Freeze the picture, or follow again; the recording goes on" },
   { key: "c", shown: "C", does: "cursors", text: "Measuring cursors: click sets A, then B" },
+  { key: "p", shown: "P", does: "pin", text: "Pin the window shown: it stays behind the live run" },
   { key: "z", shown: "Ctrl+Z", does: "undo", text: "Undo the last change, whoever made it", ctrl: true },
   { key: "z", shown: "Ctrl+Shift+Z", does: "redo", text: "Redo", ctrl: true, shift: true },
   { key: "s", shown: "Ctrl+S", does: "savePreset", text: "Save the preset", ctrl: true, whileTyping: false },
   { key: "1", shown: "1", does: "viewTune", text: "View: Tune" },
   { key: "2", shown: "2", does: "viewAnalyse", text: "View: Analyse" },
+  { key: "4", shown: "4", does: "viewRecordings", text: "View: Recordings" },
   { key: "?", shown: "?", does: "showKeys", text: "These keys" },
 ];
 
@@ -27,7 +29,9 @@ export const ROW_KEYS = [
   { shown: "← → ↑ ↓", text: "On a slider or in a number box: one step; Shift ten steps, Alt a tenth" },
   { shown: "Enter", text: "In a number box: apply" },
   { shown: "Double click", text: "On a name or slider: back to the preset’s value. On a plot: follow again" },
-  { shown: "Wheel", text: "Over a y axis: scale it" },
+  { shown: "Wheel", text: "Over a y axis: scale it. Over a recording’s plot: zoom; with Shift, move along" },
+  { shown: "↑ ↓", text: "In the list of recordings: another one; Enter opens it, Space lays it over the one that you open" },
+  { shown: "← →", text: "On the bar of a replay: back and forth" },
 ];
 
 const NOT_TYPING = new Set(["range", "radio", "checkbox", "button"]);

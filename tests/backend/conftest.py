@@ -6,7 +6,17 @@ from pathlib import Path
 import httpx
 import pytest
 
+from backend.store.database import Database
 from tests.backend.server import Server, until
+from tests.postgres import PostgresServer, find_postgres
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what needs a PostgreSQL server where there are no programs of one."""
+    if find_postgres() is None:
+        without = [item for item in items if item.get_closest_marker("postgres")]
+        config.hook.pytest_deselected(items=without)
+        items[:] = [item for item in items if item not in without]
 
 
 @pytest.fixture(scope="session")
@@ -41,3 +51,28 @@ def session(http: httpx.Client) -> httpx.Client:
 @pytest.fixture
 def data_dir(tmp_path: Path) -> Path:
     return tmp_path / "data"
+
+
+@pytest.fixture(scope="session")
+def postgres() -> Iterator[PostgresServer]:
+    programs = find_postgres()
+    assert programs is not None
+    server = PostgresServer(programs)
+    yield server
+    server.stop()
+
+
+@pytest.fixture(params=["sqlite", pytest.param("postgres", marks=pytest.mark.postgres)])
+def database_url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
+    """Address of a new, empty database of each sort."""
+    if request.param == "sqlite":
+        return f"sqlite:///{tmp_path / 'vssea.sqlite'}"
+    server: PostgresServer = request.getfixturevalue("postgres")
+    return server.new_database(f"test_{abs(hash(tmp_path))}")
+
+
+@pytest.fixture
+def database(database_url: str) -> Iterator[Database]:
+    opened = Database(database_url)
+    yield opened
+    opened.close()

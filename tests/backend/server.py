@@ -15,8 +15,8 @@ import httpx
 START_LIMIT_S = 120.0  # the kernels may have to be compiled first
 END_LIMIT_S = 20.0
 LOOK_AGAIN_S = 0.02
-WORKERS = {8: "analysis", 10: "simulation", 12: "recordings", 13: "archive", 15: "tasks"}
-"""Workers by their niceness (backend.compute.pool)."""
+ROLES = ("control", "design", "analysis", "simulation", "recordings", "recorder", "archive", "tasks")
+KEPT_OF_A_NAME = 15
 Found = TypeVar("Found")
 
 
@@ -97,14 +97,9 @@ class Server:
 
 
 def _role(pid: int) -> str | None:
-    """What a child is for: the priority tells the workers and the control process apart."""
+    """What a child is for: the name that it has given itself, without the program's and as far as the system keeps it."""
     try:
-        mapped = Path(f"/proc/{pid}/maps").read_text()
-        nice = int(Path(f"/proc/{pid}/stat").read_text().rsplit(") ", 1)[1].split()[16])
-    except (OSError, IndexError):
+        name = Path(f"/proc/{pid}/comm").read_text().strip()
+    except OSError:
         return None
-    if "python" not in mapped or nice == 5:
-        return None
-    if nice in WORKERS:
-        return WORKERS[nice]
-    return "control" if "/dev/shm/" in mapped else "design"
+    return next((role for role in ROLES if f"vssea {role}"[:KEPT_OF_A_NAME] == name), None)

@@ -6,8 +6,6 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
-from backend.presets.store import PresetStore
-
 from backend.compute.jobs import plan_run
 from backend.compute.pool import JobRefusedError
 from backend.loop import messages
@@ -19,6 +17,7 @@ from backend.session.events import Event
 from backend.session.journal import Change, Run, Told
 from backend.session.session import Session
 from backend.settings import Settings
+from backend.store.database import Database
 from backend.telemetry.ring import RingWriter
 from tests.backend.loop_bench import Pipe
 from vssea_core.scenario import Scenario
@@ -122,8 +121,8 @@ class SessionBench:
 @asynccontextmanager
 async def on_bench(folder: Path, scenario: Scenario, **options: Any) -> AsyncIterator[SessionBench]:
     """A session that runs `scenario` from t = 0."""
-    store, diary = PresetStore(folder), options.pop("journal", Diary())
-    session = Session(Settings(data_dir=folder), Workers(), store, diary, **options)  # type: ignore[arg-type]
+    database, diary = _opened(folder), options.pop("journal", Diary())
+    session = Session(Settings(data_dir=folder), Workers(), database, diary, **options)  # type: ignore[arg-type]
     bench = SessionBench(session, diary)
     try:
         await session.runs.load(scenario)
@@ -131,4 +130,9 @@ async def on_bench(folder: Path, scenario: Scenario, **options: Any) -> AsyncIte
         yield bench
     finally:
         await session.close()
-        store.close()
+        database.close()
+
+
+def _opened(folder: Path) -> Database:
+    folder.mkdir(parents=True, exist_ok=True)
+    return Database(f"sqlite:///{folder / 'vssea.sqlite'}")

@@ -111,16 +111,19 @@ def test_the_module_serves_as_the_command(file: Path) -> None:
     assert json.loads(outcome.stdout)["name"] == Scenario.model_validate_json(file.read_text("utf-8")).name
 
 
-@pytest.mark.parametrize("kept", ["a file instead of a folder", "no database"])
-def test_a_data_folder_that_cannot_be_used_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kept: str) -> None:
+def test_a_data_folder_that_cannot_be_used_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = tmp_path / "data"
-    if kept == "no database":
-        folder.mkdir()
-        (folder / "vssea.sqlite").write_bytes(b"something else" * 100)
-    else:
-        folder.write_text(kept)
+    folder.write_text("a file instead of a folder")
     monkeypatch.setenv("VSSEA_DATA_DIR", str(folder))
     outcome = vssea("serve")
     assert outcome.exit_code == 2
-    assert f"vssea: {folder} cannot keep presets" in outcome.stderr
+    assert f"vssea: {folder} cannot be the data folder" in outcome.stderr
     assert outcome.stderr.count("\n") == 1
+
+
+def test_an_address_of_a_database_is_checked_and_never_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("VSSEA_DATABASE", "mysql://me:secret@host/name")
+    outcome = vssea("serve")
+    assert outcome.exit_code == 2
+    assert "database is no address of a database; expected sqlite:///" in outcome.stderr
+    assert "secret" not in outcome.stderr

@@ -161,6 +161,22 @@ def test_notes_are_in_the_recording_of_their_run(bench: Bench) -> None:
     assert bench.wrote.item == bench.number
 
 
+def test_an_event_told_after_its_run_is_in_the_recording_of_that_run(bench: Bench) -> None:
+    for epoch in (1, 2):
+        bench.begin(epoch)
+        bench.source.put(samples(300, epoch=epoch))
+    bench.turn()
+    bench.note(epoch=1, message="late")
+    bench.turn(1.0)
+    bench.turn(1.0)
+    assert bench.read("run1").is_finished
+    bench.note(epoch=1, message="far too late")
+    bench.turn()
+    assert [note["message"] for note in bench.read("run1").documents(EVENTS)] == ["late"]
+    assert bench.read("run2").documents(EVENTS) == []
+    assert bench.wrote.item == bench.number
+
+
 def test_a_killed_writer_is_followed_without_loss_or_repetition(bench: Bench) -> None:
     run = bench.begin()
     bench.note(message="before")

@@ -41,7 +41,11 @@ export class AnalyseView {
     this.analysis = new LoopAnalysis(session, this.subject);
     this.board = new TaskBoard();
     this.panel = new SubjectPanel(this.subject, this.analysis);
-    this.tasks = new TaskList(this.board, (task) => (task.kind === "paper" ? reportAddress(task) : null));
+    this.tasks = new TaskList(
+      this.board,
+      (task) => (task.kind === "paper" ? reportAddress(task) : null),
+      (task) => task.kind in SECTION_OF,
+    );
     this.sections = new Map([["loop", { main: new LoopSection(this.analysis, this.palette, theme) }]]);
     this.buttons = SECTIONS.map(({ id, title }) =>
       element("button", { type: "button", class: "section-button", "data-section": id, click: () => this.show(id) }, title),
@@ -109,6 +113,7 @@ export class AnalyseView {
   /** Show a result in its section. */
   #take({ task, asked, result }) {
     const id = SECTION_OF[task.kind];
+    if (!id) return;
     this.sections.get(id)?.main.take?.(result, asked, this.session.document.scenario);
     if (id !== "paper") this.show(id);
   }

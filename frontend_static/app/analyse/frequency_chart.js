@@ -14,8 +14,8 @@ const LEAST_DECADES = 1;
 /**
  * One chart over frequency with a legend that tells the values under the cursor, which all charts share.
  *
- * A layout is {name, unit, factor?, isPhase?, clip: [low, high], level}: the y axis shows the data inside `clip`, with a
- * line at `level`, if there is one.
+ * A layout is {name, unit, factor?, isPhase?, clip: [low, high], level, xUnit?, lowest?}: the y axis shows the data inside
+ * `clip`, with a line at `level`, if there is one; the x axis begins at `lowest`, in rad/s or `xUnit`.
  */
 export class FrequencyChart {
   #curves = [];
@@ -49,6 +49,10 @@ export class FrequencyChart {
     this.#build();
   }
 
+  get #lowest() {
+    return this.layout.lowest ?? LOWEST;
+  }
+
   redraw() {
     this.#plot?.redraw(false, true);
   }
@@ -79,7 +83,7 @@ export class FrequencyChart {
     const { clientWidth: width, clientHeight: height } = this.area;
     if (!width || !height) return;
     const clean = this.#curves.map(({ x, y }) => [x, y.map((value) => (Number.isFinite(value) ? value : null))]);
-    const data = clean.length ? uPlot.join(clean) : [[LOWEST, 1e3]];
+    const data = clean.length ? uPlot.join(clean) : [[this.#lowest, 1e3]];
     this.#plot = new uPlot(this.#options(width, height), data, this.area);
   }
 
@@ -92,7 +96,7 @@ export class FrequencyChart {
 
   #range() {
     const [least, most] = this.layout.clip;
-    const all = this.#curves.flatMap(({ x, y }) => y.filter((value, i) => x[i] >= LOWEST && Number.isFinite(value)));
+    const all = this.#curves.flatMap(({ x, y }) => y.filter((value, i) => x[i] >= this.#lowest && Number.isFinite(value)));
     const level = this.layout.level ?? all[0] ?? 1;
     const low = Math.max(least, Math.min(...all, level));
     const high = Math.min(most, Math.max(...all, level));
@@ -114,7 +118,7 @@ export class FrequencyChart {
       legend: { show: false },
       padding: [6, 12, 0, 0],
       scales: {
-        x: { time: false, distr: 3, log: 10, range: () => [LOWEST, highest] },
+        x: { time: false, distr: 3, log: 10, range: () => [this.#lowest, highest] },
         y: layout.isPhase
           ? { auto: false, range: () => [low, high] }
           : { auto: false, distr: 3, log: 10, range: () => [low, high] },
@@ -126,7 +130,7 @@ export class FrequencyChart {
           size: BOTTOM_PX,
           splits: (_, __, min, max) => logTicks(min, max),
           filter: (_, ticks) => ticks,
-          values: (_, ticks) => ticks.map((tick, i) => `${tickText(tick)}${i === ticks.length - 1 ? " rad/s" : ""}`),
+          values: (_, ticks) => ticks.map((tick, i) => `${tickText(tick)}${i === ticks.length - 1 ? ` ${layout.xUnit ?? "rad/s"}` : ""}`),
         },
         {
           ...axis,
@@ -140,11 +144,11 @@ export class FrequencyChart {
       ],
       series: [
         {},
-        ...this.#curves.map(({ colour, dash, width: thick }) => ({
+        ...this.#curves.map(({ colour, dash, alpha, width: thick }) => ({
           scale: "y",
           width: thick ?? 1.5,
           pxAlign: 0,
-          stroke: () => palette.colour(colour),
+          stroke: () => (alpha ? palette.faint(colour, alpha) : palette.colour(colour)),
           dash,
           spanGaps: true,
           points: { show: false },

@@ -41,9 +41,10 @@ export class TaskBoard extends EventTarget {
     for (const task of this.tasks) if (task.state === "done" && this.#asked.has(identity(task))) this.#fetchOnce(task);
   }
 
-  /** Ask for a task. @param {object} body @param {object} about what to remember with it @throws {Refusal} */
-  async ask(body, about = {}) {
-    const task = await rest("POST", "/api/tasks", body);
+  /** Ask for a task. @param {object} body @param {object} about what to remember with it @param {string} address that starts it
+   *  @throws {Refusal} */
+  async ask(body, about = {}, address = "/api/tasks") {
+    const task = await rest("POST", address, body);
     this.#asked.set(identity(task), { body, ...about });
     this.refresh();
     return task;

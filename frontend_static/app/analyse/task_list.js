@@ -15,10 +15,12 @@ const WORDS = {
 export class TaskList {
   #lines = new Map();
 
-  /** @param {TaskBoard} board @param {(task: object) => string|null} report address of what a task wrote, if it is a report */
-  constructor(board, report) {
+  /** @param {TaskBoard} board @param {(task: object) => string|null} report address of what a task wrote, if it is a report
+   *  @param {(task: object) => boolean} canShow whether its result can be shown here */
+  constructor(board, report, canShow) {
     this.board = board;
     this.report = report;
+    this.canShow = canShow;
     this.list = element("ol", { class: "task-list" });
     this.problem = element("p", { class: "form-problem", role: "status", hidden: true });
     this.empty = element("p", { class: "hint" }, "None yet. Maps, searches and the paper’s report are listed here.");
@@ -38,7 +40,7 @@ export class TaskList {
         this.#lines.delete(key);
       }
     tasks.forEach((task, i) => {
-      if (!this.#lines.has(keys[i])) this.#lines.set(keys[i], new TaskLine(this.board, this.report));
+      if (!this.#lines.has(keys[i])) this.#lines.set(keys[i], new TaskLine(this.board, this.report, this.canShow));
       const line = this.#lines.get(keys[i]);
       line.show(task);
       if (this.list.children[i] !== line.root) this.list.insertBefore(line.root, this.list.children[i] ?? null);
@@ -48,9 +50,10 @@ export class TaskList {
 
 /** One task; its parts stay the same elements, so that focus is kept while it goes on. */
 class TaskLine {
-  constructor(board, report) {
+  constructor(board, report, canShow) {
     this.board = board;
     this.report = report;
+    this.canShow = canShow;
     this.title = element("span", { class: "task-title" });
     this.state = element("span", { class: "task-state" });
     this.progress = element("progress", { max: 1, "aria-label": "Progress" });
@@ -84,7 +87,7 @@ class TaskLine {
     this.reason.hidden = !this.reason.textContent;
     this.cancel.hidden = !isActive;
     const report = task.state === "done" ? this.report(task) : null;
-    this.open.hidden = task.state !== "done" || report !== null;
+    this.open.hidden = task.state !== "done" || report !== null || !this.canShow(task);
     this.link.hidden = report === null;
     if (report) this.link.href = report;
   }

@@ -6,6 +6,7 @@ import { Envelope } from "./envelope.js";
 import { EventMarks } from "./event_marks.js";
 import { Legend } from "./legend.js";
 import { linePath } from "./line_path.js";
+import { OverlayLines } from "./overlay_lines.js";
 import { YRange } from "./y_range.js";
 
 /** One of the stacked charts: legend strip, uPlot, and y scales that keep still. */
@@ -13,7 +14,7 @@ export class Chart {
   #limitIsNear = false;
   #unlike = new Set();
 
-  /** @param {object} layout entry of chart_list.js @param {object} stack {session, palette, timeWindow, cursors, marks, redraw} */
+  /** @param {object} layout entry of chart_list.js @param {object} stack PlotStack */
   constructor(layout, stack, { hasTimeAxis, isTop }) {
     this.layout = layout;
     this.stack = stack;
@@ -25,9 +26,10 @@ export class Chart {
     };
     this.series = layout.series.map((series) => ({
       side: "left",
-      label: stack.session.channels.get(series.channel)?.label ?? series.channel,
+      label: stack.source.channels.get(series.channel)?.label ?? series.channel,
       ...series,
     }));
+    this.overlays = new OverlayLines(this.series);
     this.envelopes = new Map(channelsOf([layout]).map((channel) => [channel, new Envelope()]));
     this.legend = this.#makeLegend();
     this.canvasArea = element("div", { class: "chart-area" });
@@ -54,6 +56,20 @@ export class Chart {
     this.plot.root.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
     this.plot.over.addEventListener("click", (event) => this.#click(event));
     this.plot.over.addEventListener("pointerdown", (event) => (this.pressedAt = event.clientX));
+    this.positionLine = element("div", { class: "chart-position", hidden: true });
+    this.plot.over.append(this.positionLine);
+  }
+
+  destroy() {
+    this.plot?.destroy();
+  }
+
+  /** Show where the replay stands; null shows nothing. */
+  place(time) {
+    const { min, max } = this.plot.scales.x;
+    this.positionLine.hidden = time === null || !(time >= min && time <= max);
+    if (!this.positionLine.hidden)
+      this.positionLine.style.transform = `translateX(${Math.round(this.plot.valToPos(time, "x"))}px)`;
   }
 
   resize(width, height) {
@@ -62,6 +78,7 @@ export class Chart {
 
   /** Scale and draw the samples of a span of a picture over the time [from, to]. */
   draw(picture, span, [from, to], now) {
+    this.overlays.measure(this.stack.source.overlays, [from, to], this.stack.pixels);
     this.#follow(picture, span, now);
     this.plot.batch(() => {
       this.plot.setData(this.#data(picture, span.first, span.last + 1), false);
@@ -77,12 +94,18 @@ export class Chart {
         at < 0 ? NaN : picture.column(series.channel)[at],
         this.ranges[series.side],
         cursors.difference(series.channel),
+        at < 0 ? [] : this.overlays.values(series, picture.time[at]),
       );
       if (series.onlyWhenUnlike) item.root.hidden = !this.#unlike.has(series.channel);
     }
     if (this.limitItem)
       this.limitItem.show(at < 0 ? NaN : picture.column(this.layout.limit.channel)[at], { min: 0, max: 100 }, NaN);
     this.legend.scaleReset.hidden = !this.ranges.left.isManual && !this.ranges.right?.isManual;
+  }
+
+  /** Scale at once to what is drawn next, but for what the wheel has scaled. */
+  fitScales() {
+    for (const range of Object.values(this.ranges)) if (range) range.isFresh = true;
   }
 
   freshScales() {
@@ -94,7 +117,7 @@ export class Chart {
     const inOrder = [...this.series].sort((a, b) => Boolean(b.isFirstInLegend) - Boolean(a.isFirstInLegend));
     const entries = inOrder.map((series) => ({
       label: series.label,
-      title: stack.session.channels.get(series.channel)?.label ?? series.label,
+      title: stack.source.channels.get(series.channel)?.label ?? series.label,
       colour: `series-${series.colour}`,
       isDashed: Boolean(series.dash),
       isHidden: Boolean(series.isHidden),
@@ -137,9 +160,8 @@ export class Chart {
     for (const [channel, envelope] of this.envelopes) envelope.measure(picture.column(channel), span);
     for (const [side, range] of Object.entries(this.ranges)) {
       if (!range) continue;
-      const shown = this.series
-        .filter((series) => series.side === side && !series.isHidden)
-        .map(({ channel }) => this.envelopes.get(channel));
+      const own = this.series.filter((series) => series.side === side && !series.isHidden);
+      const shown = [...own.map(({ channel }) => this.envelopes.get(channel)), ...this.overlays.envelopes(side)];
       let low = Math.min(...shown.map(({ min }) => min));
       let high = Math.max(...shown.map(({ max }) => max));
       if (this.layout.limit && side === "left") [low, high] = this.#withLimit(low, high);
@@ -167,6 +189,7 @@ export class Chart {
     const area = this.plot.over.getBoundingClientRect();
     const side = event.clientX < area.left ? "left" : event.clientX > area.right ? "right" : null;
     const range = side && this.ranges[side];
+    if (!side) this.stack.wheel(event, this.plot.posToVal(event.clientX - area.left, "x"));
     if (!range) return;
     event.preventDefault();
     const about = this.plot.posToVal(event.clientY - area.top, side);
@@ -176,7 +199,7 @@ export class Chart {
 
   #click(event) {
     if (Math.abs(event.clientX - this.pressedAt) > 3) return;
-    this.stack.cursors.set(this.plot.posToVal(event.clientX - this.plot.over.getBoundingClientRect().left, "x"));
+    this.stack.clickAt(this.plot.posToVal(event.clientX - this.plot.over.getBoundingClientRect().left, "x"));
   }
 
   #options(width, height) {
@@ -202,12 +225,13 @@ export class Chart {
         y: false,
         points: { size: 6, width: 0, fill: (_, index) => this.#pointColour(index) },
         drag: { x: true, y: false, setScale: false },
-        sync: { key: "time", scales: ["x", null] },
+        sync: { key: this.stack.syncKey, scales: ["x", null] },
         bind: { dblclick: () => () => this.stack.followAgain() },
       },
       hooks: {
         setSelect: [(plot) => this.#selected(plot)],
         setCursor: [(plot) => this.stack.pointAt(this, plot)],
+        drawAxes: [(plot) => this.overlays.draw(plot, palette)],
         draw: [
           (plot) => {
             EventMarks.draw(plot, timeWindow.marksShown, palette);

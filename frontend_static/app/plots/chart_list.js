@@ -2,7 +2,7 @@
  * The stacked charts: which channels, in which unit and colour. Labels come from the server's channel list unless given.
  *
  * `factor` turns SI into the shown unit. `colour` names a CSS variable (--series-…): one colour a signal, everywhere.
- * `smallest` is the smallest span of a y scale, in SI, so that noise at rest does not fill the chart.
+ * A series that `isAlone` has no twin in runs laid over it. `smallest` is the smallest span of a y scale, in SI, so that noise at rest does not fill the chart.
  */
 export const CHARTS = [
   {

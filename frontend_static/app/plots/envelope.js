@@ -1,14 +1,16 @@
 import { firstAtOrAfter } from "../session/telemetry_store.js";
 
 const DENSE = 1.5; // samples a pixel column, from which on columns are drawn instead of samples
+const DENSE_PAIRS = 6; // of least and greatest values, whose pairs a column must not part
 
 /** The samples to draw, and, where they are dense, which of them share a pixel column. */
 export class Span {
-  /** @param {Float64Array} times @param {[number, number]} range s @param {number} pixels width of the plot */
-  constructor(times, [from, to], pixels) {
+  /** @param {{time: Float64Array, isExact?: boolean}} picture @param {[number, number]} range s @param {number} pixels width of the plot */
+  constructor({ time: times, isExact = true }, [from, to], pixels) {
+    const dense = isExact ? DENSE : DENSE_PAIRS;
     this.first = Math.max(0, firstAtOrAfter(times, from) - 1);
     this.last = Math.min(times.length - 1, firstAtOrAfter(times, to));
-    this.columns = this.last - this.first > DENSE * pixels ? this.#columns(times, from, to, pixels) : null;
+    this.columns = this.last - this.first > dense * pixels ? this.#columns(times, from, to, pixels) : null;
   }
 
   /** @returns {Int32Array} index of the first sample of each column, and of the first after the last */

@@ -9,41 +9,23 @@ const KINDS = {
   sequence: "dim",
   limit: "warning",
   fault: "fault",
+  trigger: "accent",
   state: "dim",
 };
-const MARKS_KEPT = 500;
 const REACH_PX = 5;
 const APART_PX = 8; // a dragged slider leaves many marks of one kind
 
+/** @returns {object|null} an event as a mark, null if it has none @param {string} you name of this page in the session */
+export function markOf({ kind, time_s, text, epoch, by }, you = "") {
+  if (!KINDS[kind] || time_s === null || time_s === undefined) return null;
+  return { time: time_s, text, epoch, colour: KINDS[kind], by: by && by === you ? "you" : by };
+}
+
 /** Thin vertical lines where something happened, with its word under the pointer. */
 export class EventMarks {
-  constructor(session) {
-    this.list = [];
+  constructor() {
     this.tip = element("div", { class: "mark-tip", hidden: true });
     document.body.append(this.tip);
-    session.addEventListener("log", ({ detail }) => this.#add(detail, session));
-    session.store.addEventListener("cleared", () => this.#forget(session.store.epoch));
-  }
-
-  #add(events, session) {
-    const newest = Math.max(...events.map((event) => event.epoch ?? 0), session.store.epoch ?? 0, this.epoch ?? 0);
-    this.epoch = newest;
-    const marks = events
-      .filter((event) => KINDS[event.kind] && event.time_s !== null)
-      .map((event) => ({
-        time: event.time_s,
-        text: event.text,
-        epoch: event.epoch,
-        colour: KINDS[event.kind],
-        by: event.by === session.you ? "you" : event.by,
-      }));
-    this.list = [...this.list, ...marks].filter((mark) => mark.epoch === newest).slice(-MARKS_KEPT);
-  }
-
-  /** Events of a new epoch may be told before its first sample. */
-  #forget(epoch) {
-    this.list = this.list.filter((mark) => mark.epoch > epoch);
-    this.epoch = 0;
   }
 
   /** Draw the marks of the shown span into a chart. */

@@ -23,6 +23,7 @@ class LegendItem {
     this.entry = entry;
     this.value = element("span", { class: "legend-value" });
     this.delta = element("span", { class: "legend-delta", hidden: true });
+    this.others = element("span", { class: "legend-others", hidden: true });
     this.label = element("span", { class: "legend-label" }, entry.label);
     const swatch = element("span", { class: entry.isDashed ? "swatch dashed" : "swatch" });
     swatch.style.setProperty("--colour", `var(--${entry.colour})`);
@@ -39,13 +40,15 @@ class LegendItem {
       this.value,
       element("span", { class: "legend-unit" }, entry.unit),
       this.delta,
+      this.others,
     );
     if (entry.isStatic) this.root.disabled = true;
     this.#mark();
   }
 
-  /** @param {number} value SI @param {{min: number, max: number}} range of the y scale, SI @param {number} difference B - A, SI */
-  show(value, { min, max }, difference) {
+  /** @param {number} value SI @param {{min: number, max: number}} range of the y scale, SI @param {number} difference B - A, SI
+   *  @param {{overlay: object, value: number}[]} others the same signal of the overlays */
+  show(value, { min, max }, difference, others = []) {
     const { factor } = this.entry;
     const magnitude = Math.max(Math.abs(min), Math.abs(max)) * factor;
     const decimals = decimalsFor(magnitude);
@@ -53,6 +56,9 @@ class LegendItem {
     setText(this.value, fixed(value * factor, decimals));
     this.delta.hidden = Number.isNaN(difference);
     setText(this.delta, Number.isNaN(difference) ? "" : `Δ ${fixed(difference * factor, decimals)}`);
+    this.others.hidden = !others.length;
+    const words = others.map((other) => `${other.overlay.label}: ${fixed(other.value * factor, decimals)}`);
+    setText(this.others, words.join("  "));
   }
 
   /** Keep room for the longest value of the scale. */

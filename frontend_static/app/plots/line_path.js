@@ -7,21 +7,28 @@
 export function linePath({ envelope, sign = 1, isShown = () => true }) {
   return (plot, index, first, last) => {
     if (!isShown()) return null;
-    const { left, top, width, height } = plot.bbox;
-    const { x, [plot.series[index].scale]: y } = plot.scales;
-    const perUnit = height / (y.max - y.min);
-    const place = {
-      left,
-      from: x.min,
-      perSecond: width / (x.max - x.min),
-      zero: top + height + perUnit * y.min,
-      perUnit: sign * perUnit,
-    };
-    const stroke = new Path2D();
-    if (envelope.columns) traceColumns(stroke, envelope, place);
-    else traceSamples(stroke, plot.data[0], plot.data[index], first, last, place);
+    const samples = { time: plot.data[0], values: plot.data[index], first, last };
+    const stroke = traced(plot, plot.series[index].scale, envelope, samples, { sign });
     return { stroke, fill: null, clip: null, band: null, gaps: null, flags: 0 };
   };
+}
+
+/** @returns {Path2D} the line of some samples in a plot; `shift` s are added to their times */
+export function traced(plot, scale, envelope, { time, values, first, last }, { sign = 1, shift = 0 } = {}) {
+  const { left, top, width, height } = plot.bbox;
+  const { x, [scale]: y } = plot.scales;
+  const perUnit = height / (y.max - y.min);
+  const place = {
+    left,
+    from: x.min - shift,
+    perSecond: width / (x.max - x.min),
+    zero: top + height + perUnit * y.min,
+    perUnit: sign * perUnit,
+  };
+  const path = new Path2D();
+  if (envelope.columns) traceColumns(path, envelope, place);
+  else traceSamples(path, time, values, first, last, place);
+  return path;
 }
 
 function traceColumns(path, { values, columns, low, high, isBroken }, { left, zero, perUnit }) {

@@ -2,11 +2,12 @@ import { firstAtOrAfter } from "../session/telemetry_store.js";
 
 /**
  * Two cursors for measuring: the first click sets A, the next B, a third begins anew. Values are those of the nearest
- * samples at the time of the click.
+ * samples at the time of the click; where the picture has not every sample, the source is asked for them.
  *
  * Event `change`.
  */
 export class MeasuringCursors extends EventTarget {
+  /** @param {import("./time_window.js").TimeWindow} timeWindow @param {() => string[]} channels names of those to read */
   constructor(timeWindow, channels) {
     super();
     this.timeWindow = timeWindow;
@@ -29,8 +30,10 @@ export class MeasuringCursors extends EventTarget {
 
   set(time) {
     if (!this.isOn) return;
-    const point = this.#read(time);
+    const { picture, source } = this.timeWindow;
+    const point = this.#read(picture, time);
     if (!point) return;
+    if (picture.isExact === false) this.#refine(point, source.around(time), time);
     if (!this.a || this.b) [this.a, this.b] = [point, null];
     else this.b = point;
     this.#changed();
@@ -70,15 +73,20 @@ export class MeasuringCursors extends EventTarget {
     }
   }
 
-  #read(time) {
-    const { picture } = this.timeWindow;
+  async #refine(point, asked, time) {
+    const picture = await asked;
+    if (picture) Object.assign(point, this.#read(picture, time));
+    this.#changed();
+  }
+
+  #read(picture, time) {
     const times = picture.time;
     if (!times.length) return null;
     const after = Math.min(firstAtOrAfter(times, time), times.length - 1);
     const nearest = after > 0 && time - times[after - 1] < times[after] - time ? after - 1 : after;
     return {
       time: times[nearest],
-      values: new Map(this.channels.map((name) => [name, picture.column(name)[nearest]])),
+      values: new Map(this.channels().map((name) => [name, picture.column(name)[nearest]])),
     };
   }
 

@@ -12,29 +12,54 @@ import { TimeWindow } from "./time_window.js";
 const LEGEND_PX = 20;
 const LEAST_CHART_PX = 60;
 const LEGEND_PERIOD_MS = 100;
+const ZOOM_STEP = 1.25;
+let stacks = 0;
 
-/** The stacked charts with one time axis and one cursor, drawn once a frame and only when something changed. */
-export class PlotStack {
+/**
+ * The stacked charts with one time axis and one cursor, drawn once a frame and only when something changed. What is
+ * plotted is a source, see live_source.js.
+ *
+ * Event `pick` (detail: time in s) for a click that sets no cursor.
+ */
+export class PlotStack extends EventTarget {
   #drawn = "";
   #isAsked = true;
   #toldAt = 0;
   #isUntold = true;
   #pointer = null;
   #charts = [];
+  #position = null;
+  #isVisible = false;
 
-  constructor(root, session, theme) {
-    this.session = session;
+  constructor(root, source, theme, layouts = CHARTS) {
+    super();
+    this.source = source;
+    this.layouts = layouts;
+    this.syncKey = `time ${(stacks += 1)}`;
     this.palette = new Palette(theme);
-    this.marks = new EventMarks(session);
-    this.timeWindow = new TimeWindow(session.store, this.marks);
-    this.cursors = new MeasuringCursors(this.timeWindow, channelsOf(CHARTS));
+    this.marks = new EventMarks();
+    this.timeWindow = new TimeWindow(source);
+    this.cursors = new MeasuringCursors(this.timeWindow, () => channelsOf(this.layouts));
     this.area = element("div", { class: "chart-stack" });
     root.append(this.area);
-    session.addEventListener("hello", () => this.#charts.length || this.#build());
-    session.addEventListener("log", () => this.redraw());
-    session.store.addEventListener("cleared", () => this.timeWindow.isHeld || this.#restart());
+    source.addEventListener("channels", () => this.#charts.length || this.#build());
+    source.addEventListener("change", () => this.redraw());
+    source.addEventListener("cleared", () => (source.isLive && this.timeWindow.isHeld) || this.#restart());
     theme.addEventListener("change", () => this.redraw());
+    if (!source.isLive) this.timeWindow.addEventListener("change", () => this.#rescale());
+    new ResizeObserver(() => this.#resize()).observe(this.area);
     requestAnimationFrame((now) => this.#frame(now));
+  }
+
+  /** Width of a chart's plot, in device pixels. */
+  get pixels() {
+    return this.#charts[0]?.pixels || this.timeWindow.pixels;
+  }
+
+  /** Draw other charts from now on. */
+  show(layouts) {
+    this.layouts = layouts;
+    if (this.source.channels.size) this.#build();
   }
 
   redraw() {
@@ -44,6 +69,17 @@ export class PlotStack {
   followAgain() {
     for (const chart of this.#charts) chart.freshScales();
     this.timeWindow.follow();
+  }
+
+  /** Where the replay stands, s; null where there is none. */
+  set position(time) {
+    this.#position = time;
+    this.#isUntold = true;
+    for (const chart of this.#charts) chart.place(time);
+  }
+
+  get position() {
+    return this.#position;
   }
 
   /** The pointer moved over a chart. */
@@ -57,18 +93,41 @@ export class PlotStack {
     this.redraw();
   }
 
+  clickAt(time) {
+    if (this.cursors.isOn) this.cursors.set(time);
+    else this.dispatchEvent(new CustomEvent("pick", { detail: time }));
+  }
+
+  /** Over the plot of what stands still, the wheel zooms about the pointer; with Shift, or sideways, it moves along. */
+  wheel(event, about) {
+    if (this.source.isLive || this.source.isEmpty) return;
+    event.preventDefault();
+    const [from, to] = this.timeWindow.range;
+    const sideways = event.deltaX || (event.shiftKey ? event.deltaY : 0);
+    if (sideways) return this.timeWindow.pan((Math.sign(sideways) * (to - from)) / 10);
+    const ratio = event.deltaY > 0 ? ZOOM_STEP : 1 / ZOOM_STEP;
+    this.timeWindow.zoom(about + (from - about) * ratio, about + (to - about) * ratio);
+  }
+
+  /** What stands still is scaled to what is shown of it. */
+  #rescale() {
+    for (const chart of this.#charts) chart.fitScales();
+  }
+
   #restart() {
     this.cursors.clear();
     for (const chart of this.#charts) chart.freshScales();
   }
 
   #build() {
-    this.#charts = CHARTS.map(
-      (layout, i) => new Chart(layout, this, { isTop: i === 0, hasTimeAxis: i === CHARTS.length - 1 }),
+    for (const chart of this.#charts) chart.destroy();
+    this.#charts = this.layouts.map(
+      (layout, i) => new Chart(layout, this, { isTop: i === 0, hasTimeAxis: i === this.layouts.length - 1 }),
     );
+    this.#pointer = null;
     this.area.replaceChildren(...this.#charts.map((chart) => chart.root));
     for (const [i, [width, height]] of this.#sizes().entries()) this.#charts[i].build(width, height);
-    new ResizeObserver(() => this.#resize()).observe(this.area);
+    this.redraw();
   }
 
   #sizes() {
@@ -82,16 +141,17 @@ export class PlotStack {
 
   /** Hidden with its view, the stack has no size and keeps the one it had. */
   #resize() {
-    if (!this.area.clientWidth) return;
+    this.#isVisible = this.area.clientWidth > 0;
+    if (!this.#isVisible) return;
     for (const [i, [width, height]] of this.#sizes().entries()) this.#charts[i].resize(width, height);
     this.redraw();
   }
 
   #frame(now) {
     requestAnimationFrame((next) => this.#frame(next));
-    if (!this.#charts.length) return;
+    if (!this.#charts.length || !this.#isVisible) return;
     const { timeWindow, cursors } = this;
-    const state = `${timeWindow.isHeld ? "held" : this.#moved()}/${timeWindow.version}/${cursors.version}`;
+    const state = `${this.#moved()}/${timeWindow.version}/${cursors.version}`;
     if (state !== this.#drawn || this.#isAsked) {
       this.#drawn = state;
       this.#isAsked = false;
@@ -101,19 +161,18 @@ export class PlotStack {
     if (this.#isUntold && now - this.#toldAt >= LEGEND_PERIOD_MS) this.#tell(now);
   }
 
-  /** Changes when following the newest sample moves the picture by a pixel. */
   #moved() {
-    const { store, snapshot } = this.session;
-    if (snapshot?.state !== "running") return store.version;
-    this.timeWindow.pixels = this.#charts[0].pixels;
-    const perPixel = this.timeWindow.seconds / this.timeWindow.pixels;
-    return `${store.epoch}:${store.length > 0}:${Math.ceil(store.lastTime / perPixel)}`;
+    const { timeWindow, source } = this;
+    if (source.isLive && timeWindow.isHeld) return "held";
+    timeWindow.pixels = this.pixels;
+    return source.version(timeWindow.seconds / timeWindow.pixels);
   }
 
   #draw(now) {
     const { picture, range } = this.timeWindow;
-    const span = new Span(picture.time, range, this.#charts[0].pixels);
+    const span = new Span(picture, range, this.#charts[0].pixels);
     for (const chart of this.#charts) chart.draw(picture, span, range, now);
+    this.position = this.#position;
   }
 
   #tell(now) {
@@ -124,9 +183,10 @@ export class PlotStack {
     for (const chart of this.#charts) chart.tell(picture, at);
   }
 
-  /** The sample whose values the legends show: under the pointer, else the newest shown. */
+  /** The sample whose values the legends show: under the pointer, else where the replay stands, else the newest shown. */
   #toldSample(times, [from, to]) {
-    if (!this.#pointer) return Math.min(times.length - 1, firstAtOrAfter(times, to));
+    const newest = () => Math.min(times.length - 1, firstAtOrAfter(times, this.#position ?? to));
+    if (!this.#pointer) return newest();
     const { plot, left } = this.#pointer;
     const time = from + (left / plot.over.clientWidth) * (to - from);
     return times.length ? Math.min(firstAtOrAfter(times, time), times.length - 1) : -1;

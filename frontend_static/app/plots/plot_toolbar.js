@@ -2,9 +2,10 @@ import { element, setText } from "../element.js";
 import { fixed } from "../quantity.js";
 import { TimeWindow } from "./time_window.js";
 
-/** The line above the charts: time window, freeze, cursors, and what they measure. */
+/** The line above the charts: time window and freeze of a live source, cursors, and what they measure. */
 export class PlotToolbar {
   constructor(root, stack) {
+    const { isLive } = stack.source;
     this.timeWindow = stack.timeWindow;
     this.cursors = stack.cursors;
     this.stack = stack;
@@ -23,12 +24,11 @@ export class PlotToolbar {
     this.followButton = element(
       "button",
       { type: "button", class: "follow", hidden: true, click: () => stack.followAgain() },
-      "Follow",
+      isLive ? "Follow" : "Whole",
     );
     this.readout = element("output", { class: "readout" });
     root.append(
-      element("label", { class: "tool" }, "window ", this.select),
-      this.freezeButton,
+      ...(isLive ? [element("label", { class: "tool" }, "window ", this.select), this.freezeButton] : []),
       this.cursorsButton,
       this.followButton,
       this.readout,
@@ -56,7 +56,7 @@ export class PlotToolbar {
     this.freezeButton.setAttribute("aria-pressed", String(timeWindow.isHeld));
     this.cursorsButton.setAttribute("aria-pressed", String(cursors.isOn));
     this.followButton.hidden = !timeWindow.isHeld;
-    document.getElementById("plots").dataset.measuring = String(cursors.isOn);
+    this.stack.area.dataset.measuring = String(cursors.isOn);
     setText(this.readout, [this.#held(), this.#measured()].filter(Boolean).join("   "));
   }
 

@@ -75,6 +75,7 @@ export class LiveSession extends EventTarget {
     else if (message.type === "document") this.#takeDocument(message);
     else if (message.type === "margins") this.#takeMargins(message);
     else if (message.type === "event") this.#log([message.event]);
+    else if (message.type === "recordings") this.dispatchEvent(new Event("recordings"));
     else if (message.type === "missed") this.note(`${message.samples} samples missed: this page was too slow`);
   }
 
