@@ -19,6 +19,7 @@ export const KEYS = [
   { key: "s", shown: "Ctrl+S", does: "savePreset", text: "Save the preset", ctrl: true, whileTyping: false },
   { key: "1", shown: "1", does: "viewTune", text: "View: Tune" },
   { key: "2", shown: "2", does: "viewAnalyse", text: "View: Analyse" },
+  { key: "5", shown: "5", does: "viewPresets", text: "View: Presets" },
   { key: "?", shown: "?", does: "showKeys", text: "These keys" },
 ];
 

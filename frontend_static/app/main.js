@@ -15,6 +15,7 @@ import { PlotStack } from "./plots/plot_stack.js";
 import { PlotToolbar } from "./plots/plot_toolbar.js";
 import { PlotsOverlay } from "./plots/plots_overlay.js";
 import { Scene } from "./scene.js";
+import { PresetsView } from "./presets/presets_view.js";
 import { LiveSession } from "./session/live_session.js";
 import { rest } from "./session/rest.js";
 import { StabilityColumn } from "./stability/stability_column.js";
@@ -52,6 +53,7 @@ new Metrics(session);
 new EventLog(session);
 new StabilityColumn(document.getElementById("stability"), session);
 new AnalyseView(document.getElementById("view-analyse"), { session, theme, views });
+new PresetsView(document.getElementById("view-presets"), { session, views });
 
 bindKeys({
   stop: () => stop.press(),
@@ -64,6 +66,7 @@ bindKeys({
   savePreset: () => parameters?.presets.save(),
   viewTune: () => views.show("tune"),
   viewAnalyse: () => views.show("analyse"),
+  viewPresets: () => views.show("presets"),
   showKeys: () => keysDialog.show(),
 });
 
