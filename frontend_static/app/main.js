@@ -96,7 +96,7 @@ bindKeys({
   showKeys: () => keysDialog.show(),
 });
 
-window.vssea = { session, recordings, store: session.store, latest: (name) => session.store.latest(name) };
+window.vssea = { session, pins, recordings, store: session.store, latest: (name) => session.store.latest(name) };
 
 pins.addEventListener("change", () => side.count("pins", pins.list.length));
 

@@ -20,5 +20,7 @@ export async function rest(method, path, body, timeLimitMs = TIME_LIMIT_MS, head
   const answer = await response.json().catch(() => null);
   if (!response.ok)
     throw new Refusal(answer?.detail ? answer : { detail: `${method} ${path} answered ${response.status}.` });
+  if (answer === null && response.status !== 204)
+    throw new Refusal({ title: "No answer", detail: `${method} ${path}: the answer was cut short.` });
   return answer;
 }
