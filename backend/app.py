@@ -19,6 +19,8 @@ from backend.api.guard import Guard
 from backend.api.live import live
 from backend.api.presets import preset_routes
 from backend.api.problems import add_problem_handlers
+from backend.api.recording_origins import recording_origin_routes
+from backend.api.recordings import recording_routes
 from backend.api.resources import resources
 from backend.compute.pool import Pool
 from backend.processes import set_niceness
@@ -28,6 +30,7 @@ from backend.recordings.library import Library
 from backend.recordings.recorder import Recorder
 from backend.scene.process import SceneProcess
 from backend.scene.relay import scene_routes
+from backend.scene.replay import ReplayScene
 from backend.session.session import Session
 from backend.settings import Settings
 from backend.store.database import Database
@@ -46,8 +49,9 @@ def create_app(settings: Settings) -> FastAPI:
     tasks = Tasks(pool.tasks)
     recorder = Recorder(settings)
     session = Session(settings, pool, database, recorder, recorder, Excerpts(database))
-    library = Library(settings, Catalogue(database), recorder, pool.recordings)
+    library = Library(settings, Catalogue(database), recorder, pool.archive)
     scene = SceneProcess(session.ring_name)
+    replay = ReplayScene()
     answers = tempfile.TemporaryDirectory(prefix="vssea-")
 
     @asynccontextmanager
@@ -55,13 +59,14 @@ def create_app(settings: Settings) -> FastAPI:
         set_niceness(WEB_NICENESS)
         session.start()
         recorder.start(session.ring_name, session.tell, session.note_recording, library.added)
-        library.start(session.tell, session.note_recording)
+        library.start(session.recordings_changed, session.note_recording)
         if settings.scene:
             scene.start()
         gc.collect()
         gc.freeze()  # a collection of all that was imported would stall STOP for tens of milliseconds
         yield
         await scene.stop()
+        await replay.stop()
         await library.stop()
         await recorder.stop()
         await session.close()
@@ -81,10 +86,15 @@ def create_app(settings: Settings) -> FastAPI:
     app.include_router(actuator_routes(session, pool))
     app.include_router(analysis(session, pool, tasks, answers.name))
     app.include_router(export(session, pool))
+    app.include_router(recording_origin_routes(pool, tasks, library, answers.name))
+    app.include_router(recording_routes(session, pool, library, replay if settings.scene else None, answers.name))
     app.include_router(live(session, recorder))
     app.include_router(documentation())
     # The guard has checked Host and Origin of every websocket before this.
     app.router.routes.extend(scene_routes(lambda: scene.port, lambda _: True, lambda: scene.sentence))
+    app.router.routes.extend(
+        scene_routes(lambda: replay.port, lambda _: True, lambda: replay.sentence, place="/replay")
+    )
     static = Path(str(importlib.resources.files("frontend_static")))
     app.mount("/", StaticFiles(directory=static, html=True), name="page")
     app.state.session = session

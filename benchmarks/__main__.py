@@ -12,6 +12,7 @@ BENCHMARKS = {
     ),
     "stability": ("benchmarks.stability", "linear predictions against nonlinear simulations at 400 random points"),
     "export": ("benchmarks.export", "one tick of the exported C controller, beside the compiled tick"),
+    "store": ("benchmarks.store", "1,000 edits of one preset by two programs, and a list of 1,000 presets"),
     "start": ("benchmarks.start", "from starting the server to something moving on the page"),
     "latency": ("benchmarks.latency", "slider to changed torque, STOP to zero torque"),
     "kills": ("benchmarks.kills", "SIGKILLs of the recording process: unreadable files, tail lost"),

@@ -133,7 +133,9 @@ class Worker:
 class Pool:
     """A worker for each kind of work, so that none waits for another.
 
-    Designs that live changes wait for; the analysis that follows each change; simulations; long tasks; recordings.
+    Designs that live changes wait for; the analysis that follows each change; simulations; long tasks; recordings that
+    somebody looks at; recordings that are summarised, exported and imported. The last two need no compiler, and start when
+    they are needed.
     """
 
     def __init__(self) -> None:
@@ -142,8 +144,9 @@ class Pool:
         self.simulation = Worker("vssea simulation", "simulate_scenario", niceness=10)
         self.tasks = Worker("vssea tasks", "analysis_task", niceness=15)
         self.recordings = Worker("vssea recordings", "", niceness=12, jobs="backend.recordings.jobs")
+        self.archive = Worker("vssea archive", "", niceness=13, jobs="backend.recordings.jobs")
 
     async def stop(self) -> None:
         """End all of them."""
-        workers = (self.design, self.analysis, self.simulation, self.tasks, self.recordings)
+        workers = (self.design, self.analysis, self.simulation, self.tasks, self.recordings, self.archive)
         await asyncio.gather(*(worker.stop() for worker in workers))

@@ -1,6 +1,7 @@
 """A rig's own log as a recording: columns by their headings or by a mapping, times as they are, what is missing is NaN."""
 
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -10,13 +11,15 @@ from numpy.typing import NDArray
 from backend.recordings.csv_table import DELIMITERS, TextTable, text_table
 from backend.recordings.csv_units import PER_TIME, factor_of, guessed, split_heading, units_for
 from backend.recordings.layout import COLUMNS_KEPT, FIELD_INDEX
-from backend.recordings.recording_file import RecordingFile
+from backend.recordings.recording_file import BEGINNING, RecordingFile
 from backend.telemetry.ring import COLUMNS, EPOCH, PERIOD_S
 from vssea_core.channels import INDEX
 
 CHUNK = 1000
 LARGEST_TIME_S = 1e5
 """A log whose times begin later, such as at the seconds since 1970, is shifted to begin at 0."""
+SECONDS_SINCE_1970 = 1e9
+"""Times from here on are taken for the time of day."""
 EVEN = 0.01
 """Times are even if they differ by no more than this share of their distance."""
 Document = dict[str, Any]
@@ -61,14 +64,15 @@ def csv_import(
     """Write the log at `path` as the recording `target`, with `head` as its metadata. Raises ValueError and writes nothing."""
     table = text_table(path)
     columns = _columns(table, mapping or {})
-    time, _ = _times(table, columns, sample_rate_hz)
+    time, shift_s = _times(table, columns, sample_rate_hz)
     values = {column.channel: _scaled(table, column) for column in columns if column.channel != "time"}
     if _derived(columns):
         values["error"] = values["reference"] - values["link_position"]
     period_s = _period(time)
+    if shift_s > SECONDS_SINCE_1970:
+        head = head | {"begun_at": datetime.fromtimestamp(shift_s, UTC).isoformat(timespec="milliseconds")}
     more = {"origin": "import", "begin_ns": "0", "first_sample": "0", "part": "1", "sample_time_s": repr(period_s)}
-    unfinished = target.with_suffix(".part")
-    unfinished.unlink(missing_ok=True)
+    unfinished = target.with_name(f"{target.stem}.new{BEGINNING}")
     file = RecordingFile.create(unfinished, head | more)
     try:
         for first in range(0, len(time), CHUNK):
@@ -146,7 +150,7 @@ def _mapped(heading: str, asked: dict[str, Any]) -> Column | None:
             raise ValueError(
                 f"the {name} of {heading!r} is {value!r}; expected a number that turns it into {channel}'s unit"
             )
-    return Column(heading, channel, unit, float(factor or 0.0), float(offset or 0.0), guessed=False)
+    return Column(heading, channel, unit, float(factor), float(offset), guessed=False)
 
 
 def _scaled(table: TextTable, column: Column) -> NDArray[np.float64]:

@@ -1,4 +1,7 @@
-"""What the recordings' worker can do: paths in; bytes, dictionaries or paths out. The web process never imports this module."""
+"""What the recordings' workers can do: paths in; bytes, dictionaries or paths out. The web process never imports this module.
+
+What needs a library that is slow to import brings it in at its first use, so that a recording opens at once.
+"""
 
 import json
 from functools import lru_cache
@@ -7,18 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from backend.recordings import csv_import as imports
-from backend.recordings import exports
 from backend.recordings.details import details, row_at
 from backend.recordings.difference import difference
-from backend.recordings.folder import recover as finish
+from backend.recordings.folder import recover as finish_open
 from backend.recordings.reader import Recording
 from backend.recordings.recorded_reference import recorded_reference
 from backend.recordings.replayed_scenario import Replayed, replayed_scenario
-from backend.recordings.report import report
 from backend.recordings.samples import samples_answer
 from backend.recordings.simulated import keep_simulation
-from backend.recordings.spectrum import spectrum
 from backend.recordings.summary import summary
 from vssea_core.scenario import Scenario
 
@@ -60,19 +59,21 @@ def opened(path: str) -> Recording:
     return _opened(path, status.st_ino, status.st_size, status.st_mtime_ns)
 
 
-def recover(path: str) -> bool:
-    """Finish a recording that its writer could not; return whether there was anything to do."""
-    return finish(Path(path))
-
-
 def summarise(path: str, cache: str | None) -> Document:
     """Return facts, metrics and picture, and keep the overview in the folder `cache`."""
     return summary(opened(path), Path(cache) if cache else None)
 
 
-def describe(path: str) -> Document:
-    """Return everything but the samples."""
-    return details(opened(path))
+def recover(path: str) -> bool:
+    """Finish a recording that its writer could not; return whether there was anything to do."""
+    return finish_open(Path(path))
+
+
+def describe(path: str, entry: Document) -> bytes:
+    """Return everything but the samples as JSON, with what the list says of the recording."""
+    found = details(opened(path))
+    said = {name: value for name, value in entry.items() if value is not None and name != "events"}
+    return json.dumps(entry | found | said, ensure_ascii=False).encode()
 
 
 def samples_of(path: str, channels: list[str], from_s: float, to_s: float, points: int, cache: str) -> bytes:
@@ -84,34 +85,44 @@ def export(
     path: str, form: str, channels: list[str] | None, from_s: float, to_s: float, folder: str, progress: "Progress"
 ) -> tuple[str, str]:
     """Return media type and path of a new file in `folder`."""
+    from backend.recordings import exports
+
     return exports.export(opened(path), form, channels, from_s, to_s, folder, progress)
 
 
 def preview_csv(path: str, columns: Document | None, sample_rate_hz: float | None) -> Document:
     """Return what an import would read."""
-    return imports.csv_preview(Path(path), columns, sample_rate_hz)
+    from backend.recordings.csv_import import csv_preview
+
+    return csv_preview(Path(path), columns, sample_rate_hz)
 
 
 def import_csv(
     path: str, target: str, head: dict[str, str], columns: Document | None, sample_rate_hz: float | None
 ) -> str:
     """Write a rig's own log as a recording; return where."""
-    return str(imports.csv_import(Path(path), Path(target), head, columns, sample_rate_hz))
+    from backend.recordings.csv_import import csv_import
+
+    return str(csv_import(Path(path), Path(target), head, columns, sample_rate_hz))
 
 
-def plan_replay(path: str, to_s: float | None) -> Replayed:
-    """Return the scenario that gives a recording again."""
-    return replayed_scenario(opened(path), to_s)
+def plan_replay(path: str, to_s: float | None) -> tuple[Scenario, int]:
+    """Return the scenario that gives a recording again, and the tuning's id at its begin."""
+    replayed = replayed_scenario(opened(path), to_s)
+    return replayed.scenario, replayed.tuning_id
 
 
-def keep_simulated(path: str, replayed: Replayed, rows: str, target: str) -> bytes:
+def keep_simulated(path: str, scenario: Scenario, tuning_id: int, rows: str, target: str) -> bytes:
     """Write the rows of a simulation as a recording; return its id and the residual as JSON."""
+    replayed = Replayed(scenario, tuning_id)
     found = keep_simulation(opened(path), replayed, np.load(rows), Path(target))
     return json.dumps({"kind": "simulate_recording", "recording": Path(target).stem, **found}).encode()
 
 
 def spectrum_of(path: str, channels: list[str], from_s: float, to_s: float) -> bytes:
     """Return spectral densities as JSON."""
+    from backend.recordings.spectrum import spectrum
+
     return json.dumps(spectrum(opened(path), channels, from_s, to_s), allow_nan=False).encode()
 
 
@@ -128,6 +139,8 @@ def reference_of(path: str, channel: str, from_s: float, to_s: float) -> Documen
 
 def report_of(path: str, folder: str, cache: str) -> str:
     """Return the path of the report, one HTML page, in `folder`."""
+    from backend.recordings.report import report
+
     return report(opened(path), Path(folder), Path(cache))
 
 

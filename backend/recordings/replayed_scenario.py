@@ -18,11 +18,10 @@ Document = dict[str, Any]
 
 @dataclass(frozen=True)
 class Replayed:
-    """A scenario, the tuning's id at its begin, and how many samples from t = 0 on it stands for."""
+    """A scenario, and the tuning's id at its begin."""
 
     scenario: Scenario
     tuning_id: int
-    samples: int
 
 
 def replayed_scenario(recording: Recording, to_s: float | None = None) -> Replayed:
@@ -54,7 +53,7 @@ def replayed_scenario(recording: Recording, to_s: float | None = None) -> Replay
     document["duration_s"] = samples * period_s
     scenario = validated(document, name)
     begun = recording.documents(SCENARIO)[0]
-    return Replayed(scenario, int(begun.get("tuning_id", 1)), samples)
+    return Replayed(scenario, int(begun.get("tuning_id", 1)))
 
 
 def _refuse_long(

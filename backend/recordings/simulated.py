@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from backend.recordings.chunks import Document
 from backend.recordings.layout import CHANGES, SCENARIO
 from backend.recordings.reader import Recording
-from backend.recordings.recording_file import RecordingFile
+from backend.recordings.recording_file import BEGINNING, RecordingFile
 from backend.recordings.replayed_scenario import Replayed
 from backend.recordings.timeline import name_of, scenario_document
 from backend.telemetry.ring import COLUMNS, EPOCH, PERIOD_S, WIDTH
@@ -31,8 +31,7 @@ def keep_simulation(recording: Recording, replayed: Replayed, rows: Rows, target
         **recording.head, "id": simulated_id(recording), "name": f"{name_of(recording)}, simulated", "origin": "simulation",
         "of": recording.head.get("id", recording.path.stem), "part": "1", "first_sample": "0", "sample_time_s": repr(period_s),
     }  # fmt: skip
-    unfinished = target.with_suffix(".part")
-    unfinished.unlink(missing_ok=True)
+    unfinished = target.with_name(f"{target.stem}.new{BEGINNING}")
     file = RecordingFile.create(unfinished, head)
     end_s = float(rows[-1, INDEX["time"]])
     content = {"n": -1, "at_s": 0.0, "tuning_id": replayed.tuning_id, "scenario": scenario_document(recording)}

@@ -34,8 +34,9 @@ def scene_routes(
     check_origin: Callable[[WebSocket], bool],
     get_sentence: Callable[[], str] = lambda: "The 3D scene is starting; it appears here in a moment.",
     time_limit_s: float = 10.0,
+    place: str = "/scene",
 ) -> list[BaseRoute]:
-    """The page `/scene/` and the websocket `/scene`.
+    """The page `/scene/` and the websocket `/scene`, or those of another `place`.
 
     Parameters
     ----------
@@ -61,7 +62,7 @@ def scene_routes(
             return
         await relay(browser, f"ws://127.0.0.1:{port}", time_limit_s)
 
-    return [Route("/scene/", page, methods=["GET"]), WebSocketRoute("/scene", socket)]
+    return [Route(f"{place}/", page, methods=["GET"]), WebSocketRoute(place, socket)]
 
 
 async def relay(browser: WebSocket, upstream_address: str, time_limit_s: float) -> None:

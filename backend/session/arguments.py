@@ -69,7 +69,8 @@ Label = Field(None, min_length=1, max_length=200, description="What to call it."
 class PinnedSpan(Arguments):
     """How much of the present run to pin."""
 
-    seconds: float = Field(10.0, ge=0.1, le=60.0, strict=True, description="Length of the span that ends now.")
+    seconds: float = Field(10.0, ge=0.1, le=60.0, strict=True, description="Length of the span.")
+    to_s: float | None = Field(None, ge=0.0, strict=True, description="Where it ends in this run; without it, now.")
     label: str | None = Label
 
 

@@ -45,15 +45,16 @@ class Pins:
             except Problem as problem:
                 logger.warning("pinned runs cannot be read: %s", problem.detail)
                 return
-            self._excerpts = {excerpt.id: excerpt for excerpt in kept}
-        self._tell()
+            before, self._excerpts = self._excerpts, {excerpt.id: excerpt for excerpt in kept}
+        if before != self._excerpts:
+            self._tell()
 
     def message(self) -> Message:
         """Return all of them as pages get them, oldest first."""
         return {"type": "pins", "pins": [excerpt.document() for excerpt in self._excerpts.values()]}
 
     async def pin(self, asked: PinnedSpan, by: str) -> Message:
-        """Pin the last seconds of this run."""
+        """Pin some seconds of this run, the last ones unless another end is given."""
         session = self._session
         newest = session.ring.latest()
         epoch = session.status.epoch
@@ -66,7 +67,10 @@ class Pins:
             )
         if sum(excerpt.kind == "pin" for excerpt in self._excerpts.values()) >= MOST_PINS:
             raise Problem(409, "Too many pins", f"There are {MOST_PINS} pinned runs; let one of them go first.")
-        to_s = float(newest[INDEX["time"]])
+        now_s = float(newest[INDEX["time"]])
+        to_s = now_s if asked.to_s is None else asked.to_s
+        if to_s > now_s:
+            raise Problem(409, "Not yet", f"This run is at {now_s:.3f} s; it cannot be pinned up to {to_s:.3f} s.")
         excerpt = self._excerpt(epoch, max(0.0, to_s - asked.seconds), to_s, by)
         own = several(list(excerpt.words)) if excerpt.words else f"{session.scenario.name} at {to_s:.1f} s"
         kept = await self._keep(replace(excerpt, recording=recording, label=(asked.label or own)[:LONGEST_LABEL]))

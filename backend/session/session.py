@@ -250,6 +250,11 @@ class Session:
         self.trigger.hear(event)
         self.tell({"type": "event", "event": event.document()})
 
+    def recordings_changed(self, message: Message) -> None:
+        """Tell every page; what was pinned of a recording that is no more goes with it."""
+        self.tell(message)
+        self.spawn(self.pins.load())
+
     def note_recording(self, sentence: str, is_trouble: bool) -> None:
         """Log an event of the recorder."""
         self.note("recording", sentence, "recorder", "warning" if is_trouble else "info")

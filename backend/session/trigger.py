@@ -126,7 +126,7 @@ class Trigger:
         else:
             self._excerpt = kept.document() | {"epoch": fired.epoch}
             self._become("captured", f"Captured: {label}.")
-            self._session.note("trigger", f"captured: {label}", self._by)
+            self._session.log.add("trigger", f"captured: {label}", self._by, fired.epoch, fired.at_s)
         if self._armed is armed and armed.repeat:
             self._next = max(self._next, self._session.ring.written - 1)
             if self._crossing is not None:

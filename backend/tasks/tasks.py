@@ -2,11 +2,12 @@
 
 import asyncio
 from collections import OrderedDict
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any, Literal
 
-from backend.compute.pool import JobCancelledError, JobFailedError, JobRefusedError, Worker
+from backend.compute.pool import Hearer, JobCancelledError, JobFailedError, JobRefusedError, Worker
 from backend.problem import Problem
 
 State = Literal["queued", "running", "done", "refused", "failed", "cancelled"]
@@ -22,8 +23,8 @@ class Task:
     number: int
     kind: str
     title: str
-    job: str
-    arguments: tuple[Any, ...]
+    work: Callable[[Hearer], Awaitable[Any]]
+    end: Callable[[], None]
     state: State = "queued"
     progress: float = 0.0
     words: str = ""
@@ -50,11 +51,21 @@ class Tasks:
         self._runner: asyncio.Task[None] | None = None
 
     def ask(self, kind: str, title: str, job: str, *arguments: Any) -> Task:
-        """Queue a task. Raises Problem if too many wait."""
+        """Queue a task that is one job of the tasks' worker. Raises Problem if too many wait."""
+
+        def work(hear: Hearer) -> Awaitable[Any]:
+            return self._worker.run(job, *arguments, time_limit_s=TIME_LIMIT_S, on_progress=hear)
+
+        return self.ask_work(kind, title, work, self._worker.end_job)
+
+    def ask_work(
+        self, kind: str, title: str, work: Callable[[Hearer], Awaitable[Any]], end: Callable[[], None]
+    ) -> Task:
+        """Queue a task that is more than one job: `work` tells how far it is; `end` asks it to end. Raises Problem."""
         if sum(task.state == "queued" for task in self._tasks.values()) >= WAITING:
             raise Problem(429, "Too many tasks", f"{WAITING} tasks are waiting; expected fewer, so cancel some first.")
         self._last += 1
-        task = Task(self._last, kind, title, job, arguments)
+        task = Task(self._last, kind, title, work, end)
         self._tasks[task.number] = task
         over = [n for n, kept in self._tasks.items() if kept.state not in ("queued", "running")][
             : max(0, len(self._tasks) - KEPT)
@@ -90,7 +101,7 @@ class Tasks:
             task.state = "cancelled"
         elif task.state == "running":
             task.words = "ending"
-            self._worker.end_job()
+            task.end()
         return task
 
     async def stop(self) -> None:
@@ -111,7 +122,7 @@ class Tasks:
             task.progress, task.words = share, words
 
         try:
-            task.result = await self._worker.run(task.job, *task.arguments, time_limit_s=TIME_LIMIT_S, on_progress=hear)
+            task.result = await task.work(hear)
             task.state, task.progress = "done", 1.0
         except JobCancelledError:
             task.state = "cancelled"

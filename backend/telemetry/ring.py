@@ -65,6 +65,11 @@ class RingWriter:
         """Make the next `count` samples visible."""
         self.header[WRITTEN] += count
 
+    def close(self) -> None:
+        """Let go of the segment."""
+        del self.header, self.samples
+        self._memory.close()
+
 
 @dataclass(frozen=True)
 class Piece:

@@ -14,6 +14,7 @@ export const KEYS = [
   { key: ".", shown: ".", does: "step", text: "Step one sample, while paused; with a recording open, one sample on" },
   { key: "f", shown: "F", does: "freeze", text: "Freeze the picture, or follow again; the recording goes on" },
   { key: "c", shown: "C", does: "cursors", text: "Measuring cursors: click sets A, then B" },
+  { key: "p", shown: "P", does: "pin", text: "Pin the window shown: it stays behind the live run" },
   { key: "z", shown: "Ctrl+Z", does: "undo", text: "Undo the last change, whoever made it", ctrl: true },
   { key: "z", shown: "Ctrl+Shift+Z", does: "redo", text: "Redo", ctrl: true, shift: true },
   { key: "s", shown: "Ctrl+S", does: "savePreset", text: "Save the preset", ctrl: true, whileTyping: false },

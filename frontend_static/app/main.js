@@ -12,6 +12,9 @@ import { Metrics } from "./foot/metrics.js";
 import { ChangeHistory } from "./history/change_history.js";
 import { HistoryPanel } from "./history/history_panel.js";
 import { ParameterList } from "./parameters/parameter_list.js";
+import { Ghosts } from "./pins/ghosts.js";
+import { PinPanel } from "./pins/pin_panel.js";
+import { PinnedRuns } from "./pins/pinned_runs.js";
 import { CHARTS, channelsOf } from "./plots/chart_list.js";
 import { LiveSource } from "./plots/live_source.js";
 import { PlotStack } from "./plots/plot_stack.js";
@@ -31,6 +34,8 @@ import { RunControls } from "./topbar/run_controls.js";
 import { StateLine } from "./topbar/state_line.js";
 import { StopButton } from "./topbar/stop_button.js";
 import { ThemeButton } from "./topbar/theme_button.js";
+import { Trigger } from "./trigger/trigger.js";
+import { TriggerTool } from "./trigger/trigger_tool.js";
 import { Views } from "./topbar/views.js";
 
 const SCHEMA_RETRY_MS = 2000;
@@ -44,9 +49,15 @@ const keysDialog = new KeysDialog();
 const edits = new Edits(session);
 const history = new ChangeHistory(session);
 const stack = new PlotStack(document.getElementById("charts"), new LiveSource(session), theme);
+const pins = new PinnedRuns(session, channelsOf(CHARTS));
+const pinWindow = () => pins.pin(stack.timeWindow.range, !stack.timeWindow.isHeld);
+stack.source.ghosts = new Ghosts(pins, stack.timeWindow);
 const toolbar = new PlotToolbar(document.getElementById("plot-toolbar"), stack);
+const trigger = new Trigger(session);
 let parameters = null;
 
+new TriggerTool(document.getElementById("plot-toolbar"), trigger);
+trigger.addEventListener("captured", ({ detail }) => showCaptured(detail));
 new ThemeButton(theme);
 new StateLine(session);
 new LoopHealth(session);
@@ -57,9 +68,10 @@ new LastEvent(session);
 new Metrics(session);
 new EventLog(session);
 const margins = new StabilityColumn(document.getElementById("stability"), session);
-new SideTabs(document.getElementById("stability"), [
+const side = new SideTabs(document.getElementById("stability"), [
   { id: "margins", title: "Margins", body: margins.body },
   { id: "history", title: "History", body: new HistoryPanel(history).root },
+  { id: "pins", title: "Pinned", body: new PinPanel(pins, pinWindow).root },
 ]);
 new AnalyseView(document.getElementById("view-analyse"), { session, theme, views });
 
@@ -71,6 +83,7 @@ bindKeys({
   step: () => (recordings.isOpen ? recordings.page.step() : run.step()),
   freeze: () => toolbar.toggleFreeze(),
   cursors: () => (recordings.isOpen ? recordings.page.stack : stack).cursors.toggle(),
+  pin: () => pinWindow(),
   undo: () => history.undo(),
   redo: () => history.redo(),
   savePreset: () => parameters?.presets.save(),
@@ -82,8 +95,17 @@ bindKeys({
 
 window.vssea = { session, recordings, store: session.store, latest: (name) => session.store.latest(name) };
 
+pins.addEventListener("change", () => side.count("pins", pins.list.length));
+
 session.start();
 buildParameters();
+
+/** Hold what a trigger of this page captured; other pages find it among the pinned runs. */
+function showCaptured({ by, excerpt }) {
+  if (by !== session.you || excerpt.epoch !== session.store.epoch) return;
+  stack.timeWindow.follow();
+  stack.timeWindow.zoom(excerpt.from_s, excerpt.to_s);
+}
 
 async function buildParameters() {
   try {

@@ -34,7 +34,8 @@ ODD = '{"controller": {"kind": "forgotten"}, "gain": 3}'
 def old_database(file: Path) -> None:
     """A database as the first versions made it: two tables, no revision."""
     with closing(sqlite3.connect(file)) as connection, connection:
-        connection.execute("CREATE TABLE presets (name VARCHAR(80) PRIMARY KEY, saved_at VARCHAR(40) NOT NULL, tuning TEXT NOT NULL)")
+        columns = "name VARCHAR(80) PRIMARY KEY, saved_at VARCHAR(40) NOT NULL, tuning TEXT NOT NULL"
+        connection.execute(f"CREATE TABLE presets ({columns})")
         connection.execute("CREATE TABLE last (id INTEGER PRIMARY KEY, scenario TEXT NOT NULL, preset VARCHAR(80))")
         for day, (name, tuning) in enumerate(OLD.items(), 1):
             row = (name, f"2026-01-0{day}T10:00:00.000Z", tuning.model_dump_json())

@@ -70,6 +70,17 @@ def test_a_pin_holds_the_last_seconds_of_the_run_with_their_figures(data_dir: Pa
     at_bench(data_dir, work)
 
 
+def test_a_span_before_now_can_be_pinned_and_one_after_cannot(data_dir: Path) -> None:
+    async def work(bench: SessionBench) -> None:
+        await bench.turns(499)
+        pin = await bench.ask("pin", seconds=0.2, to_s=0.3)
+        assert (pin["from_s"], pin["to_s"]) == (pytest.approx(0.1), 0.3)
+        with pytest.raises(Problem, match="cannot be pinned up to"):
+            await bench.ask("pin", seconds=0.2, to_s=0.6)
+
+    at_bench(data_dir, work)
+
+
 def test_a_pin_says_how_its_tuning_differs_from_the_one_before(data_dir: Path) -> None:
     async def work(bench: SessionBench) -> None:
         await bench.turns(50)

@@ -82,7 +82,9 @@ def test_a_stale_edit_changes_nothing_and_names_the_revision_it_knew(database: D
 
 def test_a_change_of_what_exists_needs_a_revision(database: Database) -> None:
     put(database, NAME, draft(1))
-    with pytest.raises(Problem, match='at revision 1. Say which revision you change, with If-Match: "1-1"') as problem:
+    with pytest.raises(
+        Problem, match=r'at revision 1\. Say which revision you change, with If-Match: "1-1"'
+    ) as problem:
         put(database, NAME, draft(2))
     assert problem.value.status == 428
     assert numbers(database) == [1]

@@ -88,7 +88,7 @@ def test_a_lock_of_another_program_is_waited_for_a_bounded_time_and_then_told(
         database.open()
         with locked(filled):
             assert numbers(database) == [1]  # reading goes on
-            with pytest.raises(Problem, match="locked by another program. Nothing was changed") as problem:
+            with pytest.raises(Problem, match=r"locked by another program\. Nothing was changed") as problem:
                 put(database, 2)
             assert problem.value.status == 503
         put(database, 2)
@@ -100,7 +100,9 @@ def test_a_database_from_a_newer_version_is_left_as_it_is(filled: Path) -> None:
     before = filled.read_bytes()
     with opened(filled) as database:
         for attempt in (lambda: kept.put(database, "last", 1), lambda: numbers(database)):
-            with pytest.raises(Problem, match=f"changed by a newer version of VSSEA .its revision is {FUTURE}.") as problem:
+            with pytest.raises(
+                Problem, match=f"changed by a newer version of VSSEA .its revision is {FUTURE}."
+            ) as problem:
                 attempt()
             assert problem.value.title == "Database from a newer version"
             assert "the live session goes on" in problem.value.detail

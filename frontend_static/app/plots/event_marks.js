@@ -9,6 +9,7 @@ const KINDS = {
   sequence: "dim",
   limit: "warning",
   fault: "fault",
+  trigger: "accent",
   state: "dim",
 };
 const REACH_PX = 5;

@@ -19,7 +19,7 @@ export class LiveSource extends EventTarget {
     super();
     this.session = session;
     this.isLive = true;
-    this.overlays = [];
+    this.ghosts = null; // pins/ghosts.js
     this.#marks = new LiveMarks(session);
     session.addEventListener("hello", () => this.dispatchEvent(new Event("channels")));
     session.addEventListener("log", () => this.dispatchEvent(new Event("change")));
@@ -42,6 +42,10 @@ export class LiveSource extends EventTarget {
     return this.#marks.list;
   }
 
+  get overlays() {
+    return this.ghosts?.lines ?? [];
+  }
+
   picture() {
     return this.session.store;
   }
@@ -53,7 +57,8 @@ export class LiveSource extends EventTarget {
   /** While it runs, changes when following the newest sample moves the picture by a pixel. */
   version(secondsPerPixel) {
     const { store, snapshot } = this.session;
-    if (snapshot?.state !== "running") return store.version;
-    return `${store.epoch}:${store.length > 0}:${Math.ceil(store.lastTime / secondsPerPixel)}`;
+    const beneath = this.ghosts?.version ?? 0;
+    if (snapshot?.state !== "running") return `${store.version}/${beneath}`;
+    return `${beneath}/${store.epoch}:${store.length > 0}:${Math.ceil(store.lastTime / secondsPerPixel)}`;
   }
 }

@@ -5,7 +5,8 @@ import { traced } from "./line_path.js";
 /**
  * Other runs beneath the lines of one chart: each signal in its own colour, but paler and dashed in the way of its run.
  *
- * An overlay is {key, label, dash, alpha, shift, picture(range, pixels)}: `shift` s are added to its times.
+ * An overlay is {key, label, dash, alpha, shift, picture(range, pixels)}: `shift` s are added to its times. One that
+ * `isSilent` has no values in the legends.
  */
 export class OverlayLines {
   #shown = [];
@@ -38,7 +39,8 @@ export class OverlayLines {
   values(series, time) {
     const { channel, dash } = series;
     if (dash || !this.series.includes(series)) return [];
-    return this.#shown.map(({ overlay, picture }) => {
+    const told = this.#shown.filter(({ overlay }) => !overlay.isSilent);
+    return told.map(({ overlay, picture }) => {
       const own = time - overlay.shift;
       const isInside = picture.time.length > 0 && own >= picture.time[0] && own <= picture.time.at(-1);
       return { overlay, value: isInside ? picture.column(channel)[firstAtOrAfter(picture.time, own)] : NaN };

@@ -1,0 +1,55 @@
+import { Samples, fetchSamples } from "../recordings/samples.js";
+
+const POINTS = 4000;
+const RETRY_MS = 1000;
+const TRIES = 6; // the newest samples of a recording reach the disk a moment later
+const LATE_S = 0.1;
+
+/** One pinned run: what the server says of it, and its samples once it is shown. Event `change`. */
+export class PinnedRun extends EventTarget {
+  #isAsked = false;
+
+  constructor(excerpt, channels) {
+    super();
+    this.excerpt = excerpt;
+    this.channels = channels;
+    this.samples = Samples.none;
+    this.problem = "";
+  }
+
+  get id() {
+    return this.excerpt.id;
+  }
+
+  get seconds() {
+    return this.excerpt.to_s - this.excerpt.from_s;
+  }
+
+  /** Take what the server says of it now. */
+  take(excerpt) {
+    this.excerpt = excerpt;
+    if (excerpt.shown && !this.#isAsked) this.#fetch();
+  }
+
+  async #fetch() {
+    this.#isAsked = true;
+    const { recording, from_s, to_s } = this.excerpt;
+    if (recording === null) return this.#tell("it was not recorded");
+    for (let left = TRIES; left > 0; left -= 1) {
+      try {
+        this.samples = await fetchSamples(recording, { channels: this.channels, from_s, to_s, points: POINTS });
+        this.#tell("");
+        if (this.samples.time.at(-1) >= to_s - LATE_S) return;
+      } catch (refusal) {
+        this.#tell(refusal.message);
+      }
+      await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
+    }
+    this.#isAsked = false; // tried again when it is hidden and shown
+  }
+
+  #tell(problem) {
+    this.problem = problem;
+    this.dispatchEvent(new Event("change"));
+  }
+}
