@@ -86,7 +86,7 @@ def test_a_trigger_holds_what_it_captured(running: Server, unpinned: Page) -> No
     expect(page.locator("#trigger")).to_have_text("Trigger: armed")
     running.post("/api/session/tune", {"changes": {"observer.bandwidth": 120.0}}).raise_for_status()
     wait_until(page, "() => document.getElementById('trigger').textContent === 'Trigger: captured'")
-    expect(page.locator(".readout")).to_contain_text("zoomed")
+    expect(page.locator("#plot-toolbar .readout")).to_contain_text("zoomed")
     expect(page.locator(".pin-entry")).to_contain_text("trigger, ")
     until(lambda: any(event["kind"] == "trigger" for event in running.get("/api/session/events").json()))
 
