@@ -28,16 +28,22 @@ def recordings(server: Server) -> list[dict[str, Any]]:
     return listed
 
 
+def being_written(server: Server) -> str | None:
+    recording: str | None = server.get("/api/recordings").json()["recorder"]["recording"]
+    return recording
+
+
 def finished(server: Server, seconds: float = 4.0) -> str:
     """Record some seconds of the nominal scenario with a change in them; return the recording's id once it is summarised."""
+    before = being_written(server)
     server.post("/api/session/load_scenario", {"name": "nominal"}).raise_for_status()
-    being_written = until(lambda: server.get("/api/recordings").json()["recorder"]["recording"], 60.0)
+    recording = until(lambda: (now := being_written(server)) != before and now, 60.0)
     until(lambda: server.get("/api/session").json()["time_s"] > seconds / 2)
     server.post("/api/session/tune", {"changes": {"controller.natural_frequency": 24.0}}).raise_for_status()
     until(lambda: server.get("/api/session").json()["time_s"] > seconds)
     server.post("/api/session/load_scenario", {"name": "nominal"}).raise_for_status()
-    until(lambda: [each for each in recordings(server) if each["id"] == being_written and each["summary"]], 60.0)
-    return str(being_written)
+    until(lambda: [each for each in recordings(server) if each["id"] == recording and each["summary"]], 60.0)
+    return str(recording)
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,6 @@
 import { Samples, fetchSamples } from "../recordings/samples.js";
 
-const POINTS = 4000;
+const POINTS = 20_000; // every sample of the usual spans: what is thinned looks solid where it should be dashed
 const RETRY_MS = 1000;
 const TRIES = 6; // the newest samples of a recording reach the disk a moment later
 const LATE_S = 0.1;

@@ -7,8 +7,8 @@ export class AskDialog {
   constructor() {
     this.title = element("h2", { id: "ask-title" });
     this.text = element("p");
-    this.box = element("input", { type: "text", autocomplete: "off", hidden: true });
-    this.area = element("textarea", { rows: 5, hidden: true });
+    this.box = element("input", { type: "text", maxlength: 120, autocomplete: "off", hidden: true });
+    this.area = element("textarea", { rows: 5, maxlength: 4000, hidden: true });
     this.confirm = element("button", { value: "yes" });
     this.dialog = element(
       "dialog",

@@ -7,6 +7,8 @@ const FORMS = [
   ["json", "JSON summary"],
   ["mcap", "MCAP"],
 ];
+const WHOLE = "mcap"; // the recording's own file
+const WHOLE_WORDS = "The recording’s own file, always the whole of it";
 
 /** Plain links to the recording as a file, whole or the shown span, and to its report. */
 export class ExportPanel {
@@ -20,6 +22,7 @@ export class ExportPanel {
       new Option("whole", "whole"),
       new Option("shown span", "shown"),
     );
+    this.links.find(({ form }) => form === WHOLE).link.title = WHOLE_WORDS;
     this.report = element("a", { target: "_blank", rel: "noopener" }, "Report");
     this.reportFile = element("a", { download: true }, "as a file");
     this.root = element(
@@ -45,7 +48,8 @@ export class ExportPanel {
   #point() {
     const part = this.span.value === "shown" ? this.shown() : null;
     const query = part ? { from_s: part[0].toFixed(4), to_s: part[1].toFixed(4) } : {};
-    for (const { form, link } of this.links) link.href = addressOf(this.id, "export", { form, ...query });
+    for (const { form, link } of this.links)
+      link.href = addressOf(this.id, "export", form === WHOLE ? { form } : { form, ...query });
     this.report.href = this.reportFile.href = addressOf(this.id, "report");
     this.reportFile.download = `${this.id}.html`;
   }

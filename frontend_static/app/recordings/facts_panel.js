@@ -13,12 +13,13 @@ export class FactsPanel {
   /** @param {(changes: object) => Promise<object>} change asks the server @param {(starred: boolean) => void} star */
   constructor(change) {
     this.change = change;
-    this.name = new CommitBox("Name", (name) => this.#ask({ name: name.trim() }));
+    this.name = new CommitBox("Name", (name) => this.#ask({ name: name.trim() }), { maxlength: 120 });
     this.tags = new CommitBox("Tags, with commas between them", (text) => this.#ask({ tags: readTags(text) }), { placeholder: "none" });
     this.star = element("button", { type: "button", class: "star", click: () => this.#ask({ starred: !this.facts.starred }) });
     this.note = element("textarea", {
       "aria-label": "Note",
       rows: 3,
+      maxlength: 4000,
       placeholder: "What was tried, what came of it",
       input: () => this.#typed(),
       blur: () => this.#saveNote(),

@@ -7,6 +7,7 @@ import { addressOf } from "./samples.js";
 import { counted, durationWords, nameOf, sizeWords } from "./words.js";
 
 const PAGE = 50;
+const MOST = 500; // that the server lists at once
 const NEWEST = 3; // looked at again and again: one may be under way
 const LOOK_AGAIN_MS = 3000;
 const TYPING_MS = 250;
@@ -73,7 +74,7 @@ export class RecordingList {
   async load() {
     clearTimeout(this.#timer);
     const asked = (this.#asked += 1);
-    const answer = await this.#get({ limit: Math.max(PAGE, this.#order.length) });
+    const answer = await this.#get({ limit: Math.min(MOST, Math.max(PAGE, this.#order.length)) });
     if (asked !== this.#asked) return;
     if (answer) this.#show(answer);
     this.#timer = setTimeout(() => this.#watch(), LOOK_AGAIN_MS);

@@ -32,6 +32,7 @@ export class ReplayScene {
 
   /** Ask for the pose at a time of the recording. */
   pose(time_s) {
+    if (!this.#id) return;
     this.#wanted = { id: this.#id, time_s };
     if (!this.#isSending) this.#send();
   }
@@ -50,9 +51,15 @@ export class ReplayScene {
       const { id, time_s } = this.#wanted;
       this.#wanted = null;
       const begun = performance.now();
-      await rest("POST", addressOf(id, "scene"), { time_s }).catch(() => null); // the frame itself says what is wrong
+      try {
+        await rest("POST", addressOf(id, "scene"), { time_s });
+      } catch {
+        this.#id = null; // the frame itself says what is wrong; it is tried again with the next recording
+        break;
+      }
       await new Promise((resolve) => setTimeout(resolve, Math.max(0, PERIOD_MS - (performance.now() - begun))));
     }
     this.#isSending = false;
+    if (!this.#id) this.#wanted = null;
   }
 }
