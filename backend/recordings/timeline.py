@@ -48,7 +48,7 @@ def validated(document: Document, whose: str) -> Scenario:
 
 def name_of(recording: Recording) -> str:
     """Return what a sentence calls the recording."""
-    return recording.head.get("name") or recording.head.get("id") or recording.path.stem
+    return recording.head.get("name") or recording.head.get("scenario") or recording.path.stem
 
 
 def tunings(recording: Recording) -> list[Document]:

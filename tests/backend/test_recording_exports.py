@@ -12,8 +12,11 @@ from backend.recordings import exports
 from backend.recordings.exports import export
 from backend.recordings.layout import FIELDS
 from backend.recordings.reader import Recording
+from backend.recordings.timeline import events, scenario_document
 from tests.backend.run_recorded import noise_rows, recorded, with_gaps
+from vssea_core.channels import CHANNELS
 from vssea_core.scenarios import NOMINAL
+from vssea_core.simulation.metrics import metrics
 
 NAMES = [field.name for field in FIELDS]
 CHANGES = [(300, "tuning", {"observer.bandwidth": 60.0})]
@@ -97,10 +100,39 @@ def test_json_tells_all_but_the_samples(run: Recording, tmp_path: Path) -> None:
     assert set(told) == {"facts", "metrics", "scenario", "final", "changes", "events", "commands"}
 
 
+def test_json_of_a_span_has_its_own_metrics(run: Recording, tmp_path: Path) -> None:
+    _, path = export(run, "json", None, 0.2, 0.6, str(tmp_path))
+    told = json.loads(Path(path).read_text("utf-8"))
+    rows = run.read([channel.name for channel in CHANNELS], 0.2, 0.6).rows
+    assert told["metrics"] == pytest.approx(metrics(rows), rel=1e-12)
+    assert (told["facts"]["samples"], told["facts"]["to_s"]) == (len(rows), pytest.approx(0.6))
+
+
+def test_an_excerpt_is_a_recording_of_the_span_and_what_happened_in_it(run: Recording, tmp_path: Path) -> None:
+    _, path = export(run, "mcap", None, 0.25, 0.5, str(tmp_path))
+    cut = Recording(Path(path))
+    assert np.array_equal(everything(cut), run.read(NAMES, 0.25, 0.5).rows)
+    assert cut.is_finished
+    assert cut.head["first_sample"] == "250"
+    assert scenario_document(cut) == scenario_document(run)
+    assert scenario_document(cut, 0.5) == scenario_document(run, 0.5)
+    assert [event["text"] for event in events(cut)] == ["g 100 → 60 rad/s"]
+    _, path = export(run, "mcap", None, 0.4, 0.5, str(tmp_path))
+    assert scenario_document(Recording(Path(path))) == scenario_document(run, 0.4)
+
+
+def test_what_is_missing_is_missing_in_an_excerpt_too(tmp_path: Path) -> None:
+    found = with_gaps(tmp_path / "run.mcap", [(0, noise_rows(50)), (80, noise_rows(50, 80))])
+    _, path = export(found, "mcap", None, 0.02, 0.1, str(tmp_path))
+    assert Recording(Path(path)).read(["time"]).gaps().tolist() == [30]
+
+
 @pytest.mark.parametrize(
     ("asked", "sentence"),
     [
         (("xml", None, 0.0, 1.0), "form is 'xml'; expected one of csv, parquet, json, mcap"),
+        (("mcap", ["error"], 0.0, 1.0), "a mcap export has all channels; expected none to be named"),
+        (("mcap", None, 7.0, 8.0), "no samples from 7 to 8 s; this recording goes from 0 to 0.999 s"),
         (("csv", ["nothing"], 0.0, 1.0), "no channel 'nothing'; known: time"),
         (("parquet", None, 7.0, 8.0), "no samples from 7 to 8 s; this recording goes from 0 to 0.999 s"),
     ],
