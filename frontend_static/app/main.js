@@ -51,7 +51,7 @@ const edits = new Edits(session);
 const history = new ChangeHistory(session);
 const stack = new PlotStack(document.getElementById("charts"), new LiveSource(session), theme);
 const pins = new PinnedRuns(session, channelsOf(CHARTS));
-const pinWindow = () => pins.pin(stack.timeWindow.range, !stack.timeWindow.isHeld);
+const pinWindow = () => views.shown === "tune" && pins.pin(stack.timeWindow.range, !stack.timeWindow.isHeld);
 stack.source.ghosts = new Ghosts(pins, stack.timeWindow);
 const toolbar = new PlotToolbar(document.getElementById("plot-toolbar"), stack);
 const trigger = new Trigger(session);

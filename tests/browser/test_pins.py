@@ -29,7 +29,8 @@ def ran_for(page: Page, seconds: float) -> None:
 
 @pytest.fixture
 def unpinned(running: Server, open_page: OpenPage) -> Page:
-    """A page without pinned runs, showing where they will be."""
+    """A page without pinned runs and trigger, showing where they will be."""
+    running.post("/api/session/disarm_trigger").raise_for_status()
     page = open_page(running)
     page.locator("#side-tab-pins").click()
     while page.evaluate("window.vssea.pins.list.length"):
@@ -84,8 +85,8 @@ def test_a_trigger_holds_what_it_captured(running: Server, unpinned: Page) -> No
     page.locator("#trigger-form").get_by_role("button", name="Arm", exact=True).click()
     expect(page.locator("#trigger")).to_have_text("Trigger: armed")
     running.post("/api/session/tune", {"changes": {"observer.bandwidth": 120.0}}).raise_for_status()
-    expect(page.locator("#trigger")).to_have_text("Trigger: captured")
-    expect(page.locator(".readout")).to_contain_text("zoomed")
+    wait_until(page, "() => document.getElementById('trigger').textContent === 'Trigger: captured'")
+    expect(page.locator("#plot-toolbar .readout")).to_contain_text("zoomed")
     expect(page.locator(".pin-entry")).to_contain_text("trigger, ")
     until(lambda: any(event["kind"] == "trigger" for event in running.get("/api/session/events").json()))
 
