@@ -10,7 +10,7 @@ export class ApplyDialog {
     this.button = element("button", { type: "button", class: "start", click: () => this.#answer(this.table.isWhole ? null : this.table.chosen) });
     this.dialog = element(
       "dialog",
-      { id: "apply-dialog", "aria-labelledby": "apply-title" },
+      { id: "apply-dialog", class: "apply-dialog", "aria-labelledby": "apply-title" },
       this.title,
       this.table.root,
       element("menu", {}, element("button", { type: "button", click: () => this.#answer(undefined) }, "Cancel"), this.button),

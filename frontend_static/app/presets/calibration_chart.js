@@ -40,8 +40,8 @@ export class CalibrationChart {
       fit ? svg("path", { class: "calibration-fit", d: curve(fit.spring_constant) }) : null,
       ...marks,
       svg("text", { x: (LEFT + WIDTH - RIGHT) / 2, y: HEIGHT - 2, "text-anchor": "middle" }, "stiffness motor position [rad]"),
-      svg("text", { x: LEFT + 4, y: TOP + 8 }, "stiffness [N·m/rad]"),
-      svg("text", { x: LEFT + 4, y: MIDDLE - 4 }, "deviation [%]"),
+      svg("text", { x: WIDTH - RIGHT - 4, y: TOP + 8, "text-anchor": "end" }, "stiffness [N·m/rad]"),
+      svg("text", { x: WIDTH - RIGHT - 4, y: MIDDLE - 2, "text-anchor": "end" }, "deviation [%]"),
     );
     this.drawing.setAttribute(
       "aria-label",

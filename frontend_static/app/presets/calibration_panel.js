@@ -42,7 +42,7 @@ export class CalibrationPanel extends EventTarget {
     this.chart.show(this.report ?? { rows: [] });
     const fit = this.report?.fit;
     const now = this.report?.rms_percent;
-    setText(this.fit, fit ? `Y_τ ${inputText(Number(fit.spring_constant.toPrecision(4)))} N·m·rad³ fits best: ${compact(fit.rms_percent)} % RMS, now ${compact(now)} %.` : "");
+    setText(this.fit, fit ? `Yτ = ${inputText(Number(fit.spring_constant.toPrecision(4)))} N·m·rad³ fits best: ${compact(fit.rms_percent)} % RMS, now ${compact(now)} %.` : "");
     this.use.hidden = !fit || Math.abs(fit.spring_constant / draft.actuator.stiffness.spring_constant - 1) < 1e-4;
   }
 
@@ -99,6 +99,7 @@ export class CalibrationPanel extends EventTarget {
     this.draft.actuator.stiffness.spring_constant = Number(this.report.fit.spring_constant.toPrecision(6));
     const known = this.draft.provenance["stiffness.spring_constant"];
     this.draft.provenance["stiffness.spring_constant"] = { uncertainty: null, ...known, source: "identified", note: `fitted to ${this.report.rows.length} calibration points` };
+    this.use.hidden = true;
     this.#changed();
     this.dispatchEvent(new Event("values"));
   }

@@ -77,7 +77,8 @@ export class ComparePanel {
     this.shown = shown;
     this.found = found;
     const isLive = this.against.value === LIVE;
-    this.table.show(found, isLive ? "runs now" : `${this.against.selectedOptions[0].text}`, `version ${this.version.value}`);
+    const from = isLive ? "runs now" : this.against.selectedOptions[0].text;
+    this.table.show(found, from, `version ${this.version.value}`, this.table.isChoice && isLive);
     setText(this.words, found.same ? `The same${isLive ? " as what runs: nothing to apply" : ""}.` : "");
     this.words.hidden = !found.same;
     this.#sayApply();

@@ -30,14 +30,14 @@ export class DifferenceTable extends EventTarget {
     return this.chosen.length === this.#boxes.size;
   }
 
-  show({ changes, refused }, from, to) {
+  show({ changes, refused }, from, to, isChoice = this.isChoice) {
     this.#boxes.clear();
     this.table.hidden = changes.length === 0;
     const heads = ["parameter", "", from, to, "unit"].map((text) => element("th", { scope: "col" }, text));
-    if (this.isChoice) heads.unshift(element("th", { scope: "col" }, element("span", { class: "unseen" }, "apply")));
+    if (isChoice) heads.unshift(element("th", { scope: "col" }, element("span", { class: "unseen" }, "apply")));
     this.table.replaceChildren(
       element("thead", {}, element("tr", {}, ...heads)),
-      element("tbody", {}, ...changes.map((change) => this.#row(change))),
+      element("tbody", {}, ...changes.map((change) => this.#row(change, isChoice))),
     );
     this.refused.hidden = refused.length === 0;
     this.refused.replaceChildren(
@@ -48,7 +48,7 @@ export class DifferenceTable extends EventTarget {
     this.#settle();
   }
 
-  #row({ path, label, symbol, unit, from, to, words }) {
+  #row({ path, label, symbol, unit, from, to, words }, isChoice) {
     const place = path.split(".").slice(0, -1).join(" ").replaceAll("_", " ");
     const name = path.endsWith("kind") ? "kind" : label;
     const cells = [
@@ -58,7 +58,7 @@ export class DifferenceTable extends EventTarget {
       element("td", { class: "figure" }, text(to)),
       element("td", { class: "unit" }, unit),
     ];
-    if (this.isChoice) {
+    if (isChoice) {
       const box = element("input", { type: "checkbox", checked: true, "aria-label": words, change: () => this.#chose() });
       this.#boxes.set(path, box);
       cells.unshift(element("td", {}, box));

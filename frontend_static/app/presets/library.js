@@ -1,5 +1,7 @@
 import { rest } from "../session/rest.js";
 
+const RETRY_MS = 5000;
+
 /**
  * The saved documents of one kind, as the server keeps them: the list that a search finds, and the one that is looked at.
  *
@@ -37,6 +39,7 @@ export class Library extends EventTarget {
       this.isLoaded = true;
       this.#say("");
     } catch (refusal) {
+      if (asked === this.#asked) setTimeout(() => asked === this.#asked && this.refresh(), RETRY_MS);
       return this.#say(refusal.message);
     }
     this.dispatchEvent(new Event("list"));

@@ -1,4 +1,5 @@
 import { element } from "../element.js";
+import { wordOf } from "../parameters/choice_word.js";
 import { inputText, readNumber } from "../quantity.js";
 
 const SOURCES = ["datasheet", "measured", "identified", "estimate", "assumed"];
@@ -36,8 +37,17 @@ export class ValueTable extends EventTarget {
     const path = `${part}.${field.name}`;
     const known = this.draft.provenance[path] ?? { source: "assumed", note: "", uncertainty: null };
     const say = (changes) => this.#changed(() => (this.draft.provenance[path] = { ...(this.draft.provenance[path] ?? known), ...changes }));
-    const value = this.#number(`${field.title}`, this.draft.actuator[part][field.name], field, (number) => (this.draft.actuator[part][field.name] = number));
-    const uncertainty = this.#number(`uncertainty of ${field.title}`, known.uncertainty, { low: 0, high: 1e12, unit: field.unit }, (number) => say({ uncertainty: number }), true);
+    const values = this.draft.actuator[part];
+    const take = (entered) => (values[field.name] = entered);
+    const value = field.choices
+      ? this.#choice(field, values[field.name], take)
+      : this.#number(field.title, values[field.name], field, take);
+    const isNumber = !field.choices;
+    const range = { low: 0, high: 1e12, unit: field.unit };
+    const uncertainty = isNumber
+      ? this.#number(`uncertainty of ${field.title}`, known.uncertainty, range, (number) => say({ uncertainty: number }), true)
+      : "";
+    if (isNumber) uncertainty.classList.add("editable");
     const source = element("select", { "aria-label": `where ${field.title} comes from`, change: () => say({ source: source.value }) }, ...SOURCES.map((word) => new Option(word)));
     source.value = known.source;
     const note = element("input", { type: "text", class: "editable", maxlength: 400, "aria-label": `note on ${field.title}`, value: known.note, change: () => say({ note: note.value.trim() }) });
@@ -52,6 +62,13 @@ export class ValueTable extends EventTarget {
       element("td", {}, uncertainty),
       element("td", { class: "value-note" }, note),
     );
+  }
+
+  #choice({ title, choices }, shown, take) {
+    const select = element("select", { "aria-label": title }, ...choices.map((each) => new Option(wordOf(each), String(each))));
+    select.value = String(shown);
+    select.addEventListener("change", () => this.#changed(() => take(choices.find((each) => String(each) === select.value))));
+    return select;
   }
 
   #number(label, shown, { low, high, unit }, take, isNullable = false) {

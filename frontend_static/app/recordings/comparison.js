@@ -3,7 +3,7 @@ import { anchorTime, anchorWords } from "./anchors.js";
 import { LIVE, LiveOverlay, RecordedOverlay } from "./overlays.js";
 import { RecordedRun } from "./recorded_run.js";
 import { addressOf } from "./samples.js";
-import { nameOf } from "./words.js";
+import { nameOf, originWord } from "./words.js";
 
 /**
  * The runs over the open recording: which, how they are aligned, and how their tunings differ from its own.
@@ -41,7 +41,7 @@ export class Comparison extends EventTarget {
     const overlay = facts ? new RecordedOverlay(new RecordedRun(facts), place) : new LiveOverlay(this.session, place);
     overlay.run?.need(this.channels);
     overlay.run?.addEventListener("change", () => this.dispatchEvent(new Event("change")));
-    overlay.name = facts ? nameOf(facts) : "live";
+    overlay.name = facts ? [nameOf(facts), originWord(facts)].filter(Boolean).join(", ") : "live";
     overlay.byHand = 0;
     overlay.difference = null;
     this.overlays = [...this.overlays, overlay];

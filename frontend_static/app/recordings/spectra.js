@@ -34,7 +34,7 @@ export class Spectra {
     this.chosen = new Set(CHOSEN_FIRST);
     this.chips = CHANNELS.map(({ channel, label, colour }) => this.#chip(channel, label, colour));
     this.readout = element("output", { class: "spectra-readout", hidden: true });
-    this.problem = element("p", { class: "form-problem", role: "status", hidden: true });
+    this.problem = element("p", { class: "spectra-words", role: "status", hidden: true });
     this.area = element("div", { class: "spectra-charts" });
     this.root = element(
       "div",
@@ -83,6 +83,7 @@ export class Spectra {
       return names.length && span.to_s > span.from_s ? addressOf(one.id, "spectrum", { channels: names.join(), ...span }) : null;
     });
     const asked = (this.#asked = wanted.join(" "));
+    if (!this.area.childElementCount) this.#say("The spectra are being computed.");
     try {
       const answers = await Promise.all(wanted.map((address) => address && this.#answer(address)));
       if (asked !== this.#asked) return;

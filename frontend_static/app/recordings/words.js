@@ -47,6 +47,12 @@ export function stateWord({ state, origin }) {
   return { text, tone: state === "damaged" ? "warning" : state === "recording" ? "active" : "" };
 }
 
+/** @returns {string} where it comes from, "" if from the live session or if its name says so */
+export function originWord({ name, origin }) {
+  const word = ORIGINS[origin] ?? "";
+  return name?.includes(word) ? "" : word;
+}
+
 /** @returns {string} "3 events", "1 fault"; "–" while it is not known */
 export function counted(number, word) {
   if (number === null || number === undefined) return "–";

@@ -17,10 +17,10 @@ export async function rest(method, path, body, timeLimitMs = TIME_LIMIT_MS, head
       error.name === "TimeoutError" ? `no answer within ${timeLimitMs / 1000} s` : "the server cannot be reached";
     throw new Refusal({ title: "No answer", detail: `${method} ${path}: ${why}.` });
   }
-  const answer = await response.json().catch(() => null);
+  const answer = await response.json().catch(() => undefined);
   if (!response.ok)
     throw new Refusal(answer?.detail ? answer : { detail: `${method} ${path} answered ${response.status}.` });
-  if (answer === null && response.status !== 204)
-    throw new Refusal({ title: "No answer", detail: `${method} ${path}: the answer was cut short.` });
+  if (answer === undefined)
+    throw new Refusal({ title: "No answer", detail: `${method} ${path}: the answer broke off. Try again.` });
   return answer;
 }
