@@ -243,15 +243,18 @@ def test_the_list_is_walked_by_the_arrows_and_enter_opens(
 ) -> None:
     page = open_page(running)
     page.keyboard.press("4")
-    row(page, recorded[1]).focus()
+    expect(row(page, recorded[0])).to_be_visible()
+    upper, lower = (str(page.locator(ROWS).nth(place).get_attribute("data-id")) for place in (1, 2))
+    row(page, upper).focus()
     page.keyboard.press("ArrowDown")
-    expect(row(page, recorded[0])).to_be_focused()
+    expect(row(page, lower)).to_be_focused()
     page.keyboard.press(" ")
-    expect(row(page, recorded[0]).locator("input")).to_be_checked()
+    expect(row(page, lower).locator("input")).to_be_checked()
     page.keyboard.press("ArrowUp")
     page.keyboard.press("Enter")
-    wait_until(page, "id => location.hash.includes(id)", recorded[1])
+    wait_until(page, "id => location.hash.includes(id)", upper)
     expect(page.locator(f"{SHOWN} .run-key")).to_have_count(1)
+    expect(page.locator("#state")).to_have_attribute("data-state", "running")
 
 
 def test_the_same_scenario_simulated_leaves_no_residual(
