@@ -139,6 +139,31 @@ def paper(
         raise typer.Exit(1)
 
 
+@app.command()
+def report(
+    recording: Annotated[str, typer.Argument(help="An MCAP file, or the id of a recording in the recordings folder.")],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="File to write; <id>-report.html if unset.")
+    ] = None,
+) -> None:
+    """Write the report of a recording: one HTML page that needs no other file."""
+    from backend.recordings.reader import Recording
+    from backend.recordings.report import report_page
+
+    path = Path(recording)
+    if path.suffix != ".mcap":
+        path = _settings().recordings_folder / f"{recording}.mcap"
+    try:
+        page = report_page(Recording(path))
+    except OSError as error:
+        _refuse(f"{path} cannot be read: {error.strerror}; expected an .mcap file or a recording's id")
+    except ValueError as refusal:
+        _refuse(str(refusal))
+    target = output or Path(f"{path.stem}-report.html")
+    _write(target, page.encode())
+    typer.echo(target)
+
+
 def _read(file: str) -> str:
     try:
         return sys.stdin.read() if file == "-" else Path(file).read_text("utf-8")

@@ -18,6 +18,10 @@ BENCHMARKS = {
     "kills": ("benchmarks.kills", "SIGKILLs of the recording process: unreadable files, tail lost"),
     "recorder": ("benchmarks.recorder", "lateness of the loop with the recorder on and off"),
     "hour": ("benchmarks.hour", "one hour of recording: size, memory, samples lost, time"),
+    "recordings": (
+        "benchmarks.recordings",
+        "an hour's recording: written, opened, drawn, exported, beside the public mcap reader",
+    ),
     "loop": ("benchmarks.loop", "the 1 kHz loop for two minutes: lateness, overruns, lost samples, processor time"),
 }
 

@@ -96,6 +96,8 @@ def test_a_wheel_holds_packages_page_and_libraries_and_nothing_else(tmp_path: Pa
     held = set(zipfile.ZipFile(wheel).namelist())
     assert held >= {f"frontend_static/vendor/{name}" for name in VENDOR_FILES} | {
         "backend/cli.py",
+        "backend/store/migrations/env.py",
+        "backend/store/migrations/versions/v0002_versions.py",
         "vssea_core/export/c/vssea_controller.c",
     }
     own = {"vssea_core", "backend", "frontend_static", f"vssea-{PROJECT['version']}.dist-info"}

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from backend.api.reading import channels_in, document_of, limits_of, named_file, number_of, read, revision_of
 from backend.api.resources import body_named, body_of
 from backend.compute.pool import Pool
-from backend.problem import Problem, from_validation, refused
+from backend.problem import Problem, from_validation
 from backend.recordings.library import Library
 from backend.scene.replay import ReplayScene
 from backend.session.session import Session
@@ -100,11 +100,9 @@ def recording_routes(
         from_s: Seconds = None,
         to_s: Seconds = None,
     ) -> FileResponse:
-        """Return a file to take home: whole or a span, all channels or some; mcap is the recording's own file."""
+        """Return a file to take home: whole or a span, all channels or some; a whole mcap is the recording's own file."""
         path = library.path_of(recording)
-        if form == "mcap":
-            if channels or from_s is not None or to_s is not None:
-                raise refused("An MCAP file is the whole recording; expected no channels and no span, or another form.")
+        if form == "mcap" and not channels and from_s is None and to_s is None:
             return FileResponse(path, media_type=MEDIA_TYPE, filename=path.name)
         names = channels_in(channels) or None
         limits = limits_of(from_s, to_s)

@@ -141,7 +141,7 @@ def preset_summary(content: PresetContent) -> str:
 def actuator_summary(content: ActuatorContent) -> str:
     """Return inertias and range of stiffness in a few words."""
     link, motor, spring = content.actuator.link, content.actuator.motor, content.actuator.stiffness
-    words = f"J_l {link.inertia:g}, J_e {motor.inertia:g} kg·m²; {spring.softest:g} to {spring.stiffest:g} N·m/rad"
+    words = f"link {link.inertia:g}, motor {motor.inertia:g} kg·m²; {spring.softest:g} to {spring.stiffest:g} N·m/rad"
     count = len(content.calibration)
     return f"{words}; {count} calibration point{'s' if count != 1 else ''}" if count else words
 

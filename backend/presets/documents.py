@@ -1,6 +1,10 @@
 """Presets, or actuators, in the store. All methods block for a moment; the web process calls them in threads."""
 
-from typing import Any
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, TypeVar
+
+import sqlalchemy as sa
 
 from backend.differences import Difference, told
 from backend.presets.contents import ActuatorContent, Kind, PresetContent
@@ -10,9 +14,11 @@ from backend.store import listing, versioned
 from backend.store.database import Database
 from backend.store.document import Draft, Edit
 from backend.store.expected import ANY, Expected, Stale
-from backend.store.troubles import Clash
+from backend.store.troubles import LOCKED, Clash
 
 Content = PresetContent | ActuatorContent
+Done = TypeVar("Done")
+ATTEMPTS = 8
 
 
 class Documents:
@@ -56,22 +62,16 @@ class Documents:
     ) -> Found:
         """Keep a new version. Raises Problem 412 with what others changed, or 428 if a revision is needed."""
         draft = self.draft(content, author, note, tags)
-        try:
-            return self._put(name, draft, expected)
-        except Clash:  # another server has just made it: now it exists, and is checked as such
-            return self._put(name, draft, expected)
+        document = self.changed(
+            lambda connection: versioned.put(connection, self.kind.name, name, draft, expected), expected
+        )
+        return Found(self.kind, document, document.newest).read()
 
     def edit(self, name: str, asked: Edit, expected: Expected | None, by: str) -> tuple[Found, str]:
         """Change what is said about a document; return it with the words of what changed. Raises Problem as `put`."""
-        try:
-            with self.database.begin() as connection:
-                document, words = versioned.edit(connection, self.kind.name, name, asked, expected, by)
-        except Stale as stale:
-            raise self._stale(stale) from stale
-        except Clash as clash:
-            raise Problem(
-                409, "Name taken", f"There is a {self.kind.name} {asked.name!r} already; choose another name."
-            ) from clash
+        document, words = self.changed(
+            lambda connection: versioned.edit(connection, self.kind.name, name, asked, expected, by), expected
+        )
         return Found(self.kind, document, document.newest).read(), words
 
     def restore(self, name: str, number: int, expected: Expected | None, by: str) -> Found:
@@ -93,13 +93,22 @@ class Documents:
         scenario = content.scenario.name if isinstance(content, PresetContent) and content.scenario else None
         return Draft(content.model_dump_json(), self.kind.summary(content), scenario, author[:80], note, tags)
 
-    def _put(self, name: str, draft: Draft, expected: Expected | None) -> Found:
-        try:
-            with self.database.begin() as connection:
-                document = versioned.put(connection, self.kind.name, name, draft, expected)
-        except Stale as stale:
-            raise self._stale(stale) from stale
-        return Found(self.kind, document, document.newest).read()
+    def changed(self, change: Callable[[sa.Connection], Done], expected: Expected | None) -> Done:
+        """Return what a change makes, in one transaction. Raises Problem 412 with what others changed.
+
+        It is tried again if another server made the same document just now, and if any state will do.
+        """
+        for attempts_left in reversed(range(ATTEMPTS)):
+            try:
+                with self.database.begin() as connection:
+                    return change(connection)
+            except Stale as stale:
+                if not attempts_left or expected is None or not expected.any:
+                    raise self._stale(stale) from stale
+            except Clash:
+                if not attempts_left:
+                    break
+        raise replace(LOCKED)
 
     def _stale(self, stale: Stale) -> Problem:
         """Return the problem that says what others changed since the revision that the caller knows."""

@@ -1,9 +1,10 @@
 """Presets and actuators as files to hand on: written whole, read with every field named that does not fit."""
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
+import sqlalchemy as sa
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from backend.presets.contents import Note, PresetName, Tags
@@ -13,7 +14,7 @@ from backend.presets.found import Found
 from backend.problem import FieldError, from_validation, refused
 from backend.store import listing, versioned
 from backend.store.document import Document, Edit, Version
-from backend.store.expected import ANY, NEW
+from backend.store.expected import ANY
 from backend.store.versioned import now
 from vssea_core import __version__
 
@@ -117,26 +118,27 @@ def keep(documents: Documents, incoming: list[Incoming], by: str) -> list[Found]
         raise refused(
             f"{errors[0].field} does not fit, {errors[0].message.rstrip('.')}{more}. Nothing was imported.", *errors
         )
-    kept: list[Document] = []
-    kind = documents.kind.name
-    with documents.database.begin() as connection:
-        for each in incoming:
-            for place in each.new:
-                version, content = each.file.versions[place], each.fits[place].model
-                if content is None:
-                    continue  # told above
-                draft = documents.draft(
-                    content, version.author or by, version.note, None if each.exists else each.file.tags
-                )
-                told = {"saved_at": version.saved_at, "label": version.label, "number": version.number}
-                draft = type(draft)(**(vars(draft) | told))
-                expected = ANY if each.exists or place != each.new[0] else NEW
-                document = versioned.put(connection, kind, each.file.name, draft, expected)
-            if each.new:
-                if each.file.archived and not each.exists:
-                    document = versioned.edit(connection, kind, each.file.name, Edit(archived=True), ANY, by)[0]
-                kept.append(document)
+    kept = documents.changed(lambda connection: _kept(documents, connection, incoming, by), ANY)
     return [Found(documents.kind, document, document.newest).read() for document in kept]
+
+
+def _kept(documents: Documents, connection: sa.Connection, incoming: list[Incoming], by: str) -> list[Document]:
+    kind, kept = documents.kind.name, []
+    for each in incoming:
+        for place in each.new:
+            version, content = each.file.versions[place], each.fits[place].model
+            if content is None:
+                continue  # told above
+            draft = documents.draft(
+                content, version.author or by, version.note, None if each.exists else each.file.tags
+            )
+            draft = replace(draft, saved_at=version.saved_at, label=version.label, number=version.number)
+            document = versioned.put(connection, kind, each.file.name, draft, ANY)
+        if each.new:
+            if each.file.archived and not each.exists:
+                document = versioned.edit(connection, kind, each.file.name, Edit(archived=True), ANY, by)[0]
+            kept.append(document)
+    return kept
 
 
 def _entries(documents: Documents, file: Any, name: str | None) -> list[Any]:

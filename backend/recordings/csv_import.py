@@ -43,6 +43,8 @@ def csv_preview(path: Path, mapping: Mapping | None = None, sample_rate_hz: floa
     table = text_table(path)
     columns = _columns(table, mapping or {})
     time, shift_s = _times(table, columns, sample_rate_hz)
+    for column in columns:
+        table.numbers(column.heading)
     used = {column.heading for column in columns}
     steps = np.diff(time)
     return {

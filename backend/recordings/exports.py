@@ -1,4 +1,4 @@
-"""A recording taken home: CSV with units, Parquet with everything that belongs to it, or its summary as JSON."""
+"""A recording taken home: CSV with units, Parquet with everything that belongs to it, an excerpt, or its figures as JSON."""
 
 import json
 import os
@@ -11,10 +11,14 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
+from backend.recordings.excerpt import write_excerpt
 from backend.recordings.layout import FIELD_INDEX, FIELDS, values_of
+from backend.recordings.metrics_by_blocks import MetricsByBlocks
+from backend.recordings.overview import all_rows
 from backend.recordings.reader import Recording
-from backend.recordings.summary import summary
+from backend.recordings.summary import facts
 from backend.recordings.timeline import commands, events, scenario_document, tunings
+from backend.telemetry.ring import WIDTH
 
 ROWS_AT_ONCE = 100_000
 """Rows of a row group, and of what is in memory at a time."""
@@ -22,7 +26,9 @@ MEDIA_TYPES = {
     "csv": "text/csv; charset=utf-8",
     "parquet": "application/vnd.apache.parquet",
     "json": "application/json",
+    "mcap": "application/x-mcap",
 }
+WHOLE_ROWS = ("json", "mcap")
 Tell = Callable[[float, str], object]
 
 
@@ -35,18 +41,23 @@ def export(
     folder: str,
     tell: Tell | None = None,
 ) -> tuple[str, str]:
-    """Return media type and path of a new file in `folder`: form csv, parquet or json. All channels if none is named.
+    """Return media type and path of a new file in `folder`: form csv, parquet, json or mcap. All channels if none is named.
 
     Raises ValueError for another form, an unknown channel, or a span without samples.
     """
     if form not in MEDIA_TYPES:
-        raise ValueError(f"form is {form!r}; expected one of {', '.join((*MEDIA_TYPES, 'mcap'))}")
+        raise ValueError(f"form is {form!r}; expected one of {', '.join(MEDIA_TYPES)}")
+    if form in WHOLE_ROWS and channels:
+        raise ValueError(f"a {form} export has all channels; expected none to be named, or form csv or parquet")
     names = _named(channels)
     with tempfile.NamedTemporaryFile(dir=folder, suffix=f".{form}", delete=False) as file:
         path = file.name
     try:
         if form == "json":
-            Path(path).write_text(json.dumps(_document(recording), ensure_ascii=False, allow_nan=False), "utf-8")
+            told = _document(recording, from_s, to_s)
+            Path(path).write_text(json.dumps(told, ensure_ascii=False, allow_nan=False), "utf-8")
+        elif form == "mcap":
+            write_excerpt(recording, from_s, to_s, Path(path))
         else:
             tables = _tables(recording, names, from_s, to_s, tell or (lambda share, words: None))
             (_write_csv if form == "csv" else _write_parquet)(path, _schema(recording, names), tables)
@@ -123,10 +134,15 @@ def _write_csv(path: str, schema: pa.Schema, tables: Iterator[np.ndarray]) -> No
             pa.csv.write_csv(_table(rows, schema), file, plain)
 
 
-def _document(recording: Recording) -> dict[str, object]:
-    found = summary(recording)
+def _document(recording: Recording, from_s: float, to_s: float) -> dict[str, object]:
+    figures, count, times = MetricsByBlocks(), 0, (0.0, 0.0)
+    for _, rows in all_rows(recording, from_s, to_s):
+        figures.take(rows[:, :WIDTH])
+        times = (float(rows[0, 0]) if count == 0 else times[0]), float(rows[-1, 0])
+        count += len(rows)
+    span = {"from_s": times[0], "to_s": times[1], "duration_s": times[1] - times[0], "samples": count}
     return {
-        "facts": found["facts"], "metrics": found["metrics"], "scenario": scenario_document(recording),
+        "facts": facts(recording) | span, "metrics": figures.metrics(), "scenario": scenario_document(recording),
         "final": scenario_document(recording, np.inf), "changes": tunings(recording), "events": events(recording),
         "commands": commands(recording),
     }  # fmt: skip

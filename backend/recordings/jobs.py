@@ -72,7 +72,7 @@ def recover(path: str) -> bool:
 def describe(path: str, entry: Document) -> bytes:
     """Return everything but the samples as JSON, with what the list says of the recording."""
     found = details(opened(path))
-    said = {name: value for name, value in entry.items() if value is not None and name != "events"}
+    said = {name: value for name, value in entry.items() if value is not None and name not in ("events", "scenario")}
     return json.dumps(entry | found | said, ensure_ascii=False).encode()
 
 

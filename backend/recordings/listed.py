@@ -21,7 +21,7 @@ def listed(
         "name": row.name or facts.get("name") or facts.get("scenario") or head.get("scenario", ""),
         "scenario": facts.get("scenario") or head.get("scenario", ""),
         "started_at": facts.get("started_at") or head.get("begun_at") or _begun(found),
-        "duration_s": facts.get("duration_s"),
+        "duration_s": facts.get("duration_s") if progress is None else _so_far(progress, head),
         "samples": progress.samples if progress is not None else facts.get("samples"),
         "lost": progress.lost if progress is not None else facts.get("lost"),
         "size_bytes": found.size,
@@ -45,6 +45,10 @@ def matches(entry: dict[str, Any], search: str, starred: bool | None, origin: st
         return False
     text = " ".join([entry["name"], entry["scenario"], entry["note"], entry["id"], *entry["tags"]]).casefold()
     return all(word in text for word in search.casefold().split())
+
+
+def _so_far(progress: Wrote, head: dict[str, str]) -> float:
+    return progress.samples * float(head.get("sample_time_s", 0.0))
 
 
 def _begun(found: Found) -> str:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from backend.recordings.layout import FIELD_INDEX, FIELDS, values_of
-from backend.recordings.reader import Recording
+from backend.recordings.reader import ANOTHER_INSTANT_S, Recording
 from backend.recordings.thinning import extremes
 
 BLOCK = 256
@@ -104,7 +104,7 @@ def overview(recording: Recording, cache: Path) -> Blocks:
             return np.load(kept)
     before = _begun(others)
     builder = OverviewBuilder(before)
-    since_s = -np.inf if before is None else np.nextafter(before["end_s"][-1], np.inf)
+    since_s = -np.inf if before is None else before["end_s"][-1] + ANOTHER_INSTANT_S
     for numbers, rows in all_rows(recording, since_s):
         builder.take(numbers, rows)
     blocks = builder.blocks()

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
+import zstandard
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.records import Chunk, Message
@@ -16,6 +17,12 @@ from backend.recordings.chunks import NS, Place
 from backend.recordings.layout import FIELD_INDEX, MESSAGE, TELEMETRY
 from backend.recordings.recording_file import ENDING, HEAD
 from backend.recordings.scan import RECORD, holds_samples, scan
+
+SAME_INSTANT_S = 1e-9
+"""Times are k T in floating point: a span to 5.1 s has the sample at 5.1000000000000005 s."""
+ANOTHER_INSTANT_S = 2.0 * SAME_INSTANT_S
+"""Added to the end of a span, this begins the next one."""
+DAMAGE = (CRCValidationError, McapError, ValueError, zstandard.ZstdError)
 
 
 @dataclass(frozen=True)
@@ -94,17 +101,16 @@ class Recording:
     def blocks(self, from_s: float = -np.inf, to_s: float = np.inf) -> Any:
         """Yield the span's samples as message records (n,), chunk by chunk."""
         time = f"value{FIELD_INDEX['time']}"
+        low_s, high_s = from_s - SAME_INSTANT_S, to_s + SAME_INSTANT_S
         with self.path.open("rb") as file:
             for place in self._blocks:
-                if (place.end_ns - self.begin_ns) / NS < from_s - 1e-9 or (
-                    place.start_ns - self.begin_ns
-                ) / NS > to_s + 1e-9:
+                if (place.end_ns - self.begin_ns) / NS < low_s or (place.start_ns - self.begin_ns) / NS > high_s:
                     continue
                 data = self._data(file, place)
                 if data is None:
                     continue
                 records = np.frombuffer(data, MESSAGE)
-                inside = (records[time] >= from_s) & (records[time] <= to_s)
+                inside = (records[time] >= low_s) & (records[time] <= high_s)
                 if inside.all():
                     yield records
                 elif inside.any():
@@ -120,7 +126,7 @@ class Recording:
                 chunk = self._chunk(file, place)
                 try:
                     records = breakup_chunk(chunk, validate_crc=True)
-                except (CRCValidationError, McapError, ValueError):
+                except DAMAGE:
                     self.damaged += 1
                     continue
                 contents += [(r.log_time, r.sequence, json.loads(r.data)) for r in records if isinstance(r, Message)]
@@ -131,7 +137,7 @@ class Recording:
     def _data(self, file: IO[bytes], place: Place) -> bytes | None:
         try:
             stream, size = get_chunk_data_stream(self._chunk(file, place), validate_crc=True)
-        except (CRCValidationError, McapError, ValueError):
+        except DAMAGE:
             self.damaged += 1
             return None
         return stream.read(size)

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from backend.recordings.layout import CHANGES, COMMANDS, EVENTS, SCENARIO
-from backend.recordings.reader import Recording
-from backend.recordings.timeline import SAME_INSTANT_S, name_of, scenario_document, validated
+from backend.recordings.reader import SAME_INSTANT_S, Recording
+from backend.recordings.timeline import name_of, scenario_document, validated
 from vssea_core.scenario import MAX_SAMPLES, Scenario
 
 MOST_CHANGES = 32

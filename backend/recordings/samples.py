@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from backend.recordings.layout import FIELD_INDEX
 from backend.recordings.overview import BLOCK, Blocks, OverviewBuilder, all_rows, overview
-from backend.recordings.reader import Recording
+from backend.recordings.reader import ANOTHER_INSTANT_S, SAME_INSTANT_S, Recording
 from backend.recordings.thinning import extremes, merged
 
 Numbers = NDArray[np.float64]
@@ -63,7 +63,7 @@ def drawn(
     points: int,
     blocks: Callable[[], Blocks] | None = None,
 ) -> Drawn:
-    """Return what is drawn of a span in about `points` rows; a wide span is drawn from the overview, if `blocks` gives it."""
+    """Return what is drawn of a span in at most `points` rows; a wide span is drawn from the overview, if `blocks` gives it."""
     if not 4 <= points <= MOST_POINTS:
         raise ValueError(f"points is {points}; expected 4 to {MOST_POINTS}")
     if not from_s <= to_s:
@@ -73,7 +73,7 @@ def drawn(
         return _from_overview(recording, channels, from_s, to_s, runs, blocks())
     block = recording.read(["time", *channels], from_s, to_s)
     time, rows, gaps = block.rows[:, 0], block.rows[:, 1:], block.gaps()
-    if len(rows) <= points:
+    if len(rows) + len(gaps) <= points:
         missing = np.full((len(gaps), rows.shape[1]), np.nan)
         return Drawn(np.insert(time, gaps, time[gaps - 1]), np.insert(rows, gaps, missing, axis=0), True, len(rows))
     starts = _starts(len(rows), gaps, runs)
@@ -87,9 +87,9 @@ def _from_overview(
 ) -> Drawn:
     """Return what is drawn of whole blocks, and of the samples beside them at both ends of the span."""
     columns = [FIELD_INDEX[name] for name in channels]
-    inside = blocks[(blocks["begin_s"] >= from_s) & (blocks["end_s"] <= to_s)]
-    head = _as_blocks(recording, from_s, np.nextafter(inside["begin_s"][0], -np.inf))
-    tail = _as_blocks(recording, np.nextafter(inside["end_s"][-1], np.inf), to_s)
+    inside = blocks[(blocks["begin_s"] >= from_s - SAME_INSTANT_S) & (blocks["end_s"] <= to_s + SAME_INSTANT_S)]
+    head = _as_blocks(recording, from_s, inside["begin_s"][0] - ANOTHER_INSTANT_S)
+    tail = _as_blocks(recording, inside["end_s"][-1] + ANOTHER_INSTANT_S, to_s)
     inside = np.concatenate([head, inside, tail])
     low, high, low_first = (inside[name][:, columns] for name in ("low", "high", "low_first"))
     gaps = np.flatnonzero(inside["gap_before"])
@@ -110,9 +110,15 @@ def _as_blocks(recording: Recording, from_s: float, to_s: float) -> Blocks:
 
 
 def _starts(count: int, gaps: NDArray[np.intp], runs: int) -> NDArray[np.intp]:
-    """Return where `runs` equal runs of `count` rows begin; no run goes across one of the first gaps, as many as runs."""
-    even = np.linspace(0, count, min(runs, count) + 1)[:-1].astype(np.intp)
-    return np.unique(np.concatenate([even, gaps[:runs]]))
+    """Return where at most `runs` runs of `count` rows begin, those of nothing counted: no run goes across a gap.
+
+    Of more gaps than a quarter of the runs only so many are kept.
+    """
+    most = runs // 4
+    if len(gaps) > most:
+        gaps = gaps[np.linspace(0, len(gaps) - 1, most).astype(np.intp)]
+    even = np.linspace(0, count, min(max(1, runs - 2 * len(gaps)), count) + 1)[:-1].astype(np.intp)
+    return np.unique(np.concatenate([even, gaps]))
 
 
 def _in_pairs(pairs: Numbers, begin_s: Numbers, end_s: Numbers, after_gap: NDArray[np.bool_], of: int) -> Drawn:

@@ -59,10 +59,7 @@ def picture(recording: Recording, blocks: Blocks) -> Document | None:
     """Return a small picture: times [s] and a few channels, least and greatest values in turn; None of an empty recording."""
     if not len(blocks):
         return None
-    for points in (PICTURE_POINTS, PICTURE_POINTS // 2):  # gaps take room too
-        shown = drawn(recording, list(PICTURED), -np.inf, np.inf, points, lambda: blocks)
-        if len(shown.time) <= PICTURE_POINTS:
-            break
+    shown = drawn(recording, list(PICTURED), -np.inf, np.inf, PICTURE_POINTS, lambda: blocks)
     columns = {name: _listed(shown.rows[:, place], 5) for place, name in enumerate(PICTURED)}
     return {"time": _listed(shown.time, 7), **columns}
 

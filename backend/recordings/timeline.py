@@ -6,11 +6,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from backend.recordings.layout import CHANGES, COMMANDS, EVENTS, SCENARIO
-from backend.recordings.reader import Recording
+from backend.recordings.reader import SAME_INSTANT_S, Recording
 from vssea_core.scenario import Scenario
 
 Document = dict[str, Any]
-SAME_INSTANT_S = 1e-9
 
 
 def scenario_document(recording: Recording, at_s: float | None = None) -> Document | None:
@@ -49,7 +48,7 @@ def validated(document: Document, whose: str) -> Scenario:
 
 def name_of(recording: Recording) -> str:
     """Return what a sentence calls the recording."""
-    return recording.head.get("name") or recording.head.get("id") or recording.path.stem
+    return recording.head.get("name") or recording.head.get("scenario") or recording.path.stem
 
 
 def tunings(recording: Recording) -> list[Document]:

@@ -1,17 +1,21 @@
 """The scene of a recording: a second scene process, started at its first use, that shows whatever sample it is given."""
 
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+
 import numpy as np
 
-from backend.scene.process import SceneProcess
+from backend.scene.process import SceneProcess, run_scene
 from backend.telemetry.ring import WIDTH, Ring, RingWriter
 
 UNUSED = "The scene of a recording appears here when one is opened."
 
 
 class ReplayScene:
-    """Holds a ring of its own, with the sample to be shown as its newest."""
+    """Holds a ring of its own, with the sample to be shown as its newest; `target` is the entry of the process."""
 
-    def __init__(self) -> None:
+    def __init__(self, target: Callable[[str, Connection], None] = run_scene) -> None:
+        self._target = target
         self._ring: Ring | None = None
         self._writer: RingWriter | None = None
         self._process: SceneProcess | None = None
@@ -31,7 +35,7 @@ class ReplayScene:
         if self._writer is None:
             self._ring = Ring()
             self._writer = RingWriter(self._ring.name)
-            self._process = SceneProcess(self._ring.name)
+            self._process = SceneProcess(self._ring.name, self._target)
             self._process.start()
         _, room = self._writer.room(1)
         room[0, :WIDTH] = np.nan_to_num(row)  # an import may lack what the scene draws

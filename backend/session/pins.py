@@ -5,15 +5,13 @@ import logging
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from backend.problem import Problem
 from backend.session.arguments import ExcerptChange, ExcerptNumber, PinnedSpan
 from backend.session.changes import differences
 from backend.session.excerpt import Excerpt, ExcerptStore, Recordings
 from backend.session.journal import wall_time
 from backend.session.sentences import changes_words, several
-from backend.telemetry.ring import EPOCH, WIDTH, Samples
+from backend.telemetry.ring import EPOCH, WIDTH
 from vssea_core.channels import INDEX
 from vssea_core.signals.period import period_s
 from vssea_core.simulation.metrics import METRICS
@@ -71,7 +69,7 @@ class Pins:
         to_s = now_s if asked.to_s is None else asked.to_s
         if to_s > now_s:
             raise Problem(409, "Not yet", f"This run is at {now_s:.3f} s; it cannot be pinned up to {to_s:.3f} s.")
-        excerpt = self._excerpt(epoch, max(0.0, to_s - asked.seconds), to_s, by)
+        excerpt = await self._excerpt(epoch, max(0.0, to_s - asked.seconds), to_s, by)
         own = several(list(excerpt.words)) if excerpt.words else f"{session.scenario.name} at {to_s:.1f} s"
         kept = await self._keep(replace(excerpt, recording=recording, label=(asked.label or own)[:LONGEST_LABEL]))
         session.note("pin", f"pinned {kept.label}", by)
@@ -79,7 +77,7 @@ class Pins:
 
     async def keep_capture(self, label: str, by: str, epoch: int, from_s: float, to_s: float, at_s: float) -> Excerpt:
         """Keep what a trigger captured. Raises Problem if it cannot be kept."""
-        excerpt = self._excerpt(epoch, from_s, to_s, by)
+        excerpt = await self._excerpt(epoch, from_s, to_s, by)
         captured = [old.id for old in self._excerpts.values() if old.kind == "trigger"]
         for number in captured[: len(captured) + 1 - MOST_TRIGGERED]:
             await self._remove(number)
@@ -125,24 +123,25 @@ class Pins:
         await asyncio.to_thread(self._store.remove, number)
         self._excerpts.pop(number, None)
 
-    def _excerpt(self, epoch: int, from_s: float, to_s: float, by: str) -> Excerpt:
+    async def _excerpt(self, epoch: int, from_s: float, to_s: float, by: str) -> Excerpt:
         scenario = self._session.scenario
         tuning = scenario.tuning.model_dump(mode="json")
         before = next((old.tuning for old in reversed(self._excerpts.values()) if old.tuning), tuning)
         words = tuple(changes_words(scenario, "tuning", differences(before, tuning)))
-        rows = self._rows(epoch, from_s, to_s)
-        metrics = {metric.name: metric.compute(rows) for metric in METRICS} if len(rows) else {}
+        period = period_s(scenario.reference)
+        metrics = await asyncio.to_thread(self._metrics, epoch, from_s, to_s, scenario.timing.sample_time_s)
         return Excerpt(
-            None, "pin", "", from_s, to_s, by, wall_time(), period_s=period_s(scenario.reference), words=words,
+            None, "pin", "", from_s, to_s, by, wall_time(), period_s=period, words=words,
             metrics=metrics, tuning=tuning,
         )  # fmt: skip
 
-    def _rows(self, epoch: int, from_s: float, to_s: float) -> Samples:
-        """Return the samples of a span as far as the ring still has them."""
-        span_s = self._session.status.time_s - from_s + 1.0
-        samples = self._session.ring.last(round(span_s / self._session.scenario.timing.sample_time_s)).samples
+    def _metrics(self, epoch: int, from_s: float, to_s: float, sample_time_s: float) -> dict[str, float]:
+        """Return the figures of a span as far as the ring still has it."""
+        behind_s = self._session.status.time_s - from_s + 1.0
+        samples = self._session.ring.last(round(behind_s / sample_time_s)).samples
         time = samples[:, INDEX["time"]]
-        return samples[(samples[:, EPOCH] == epoch) & (time >= from_s) & (time <= to_s)][:, :WIDTH].astype(np.float64)
+        rows = samples[(samples[:, EPOCH] == epoch) & (time >= from_s) & (time <= to_s)][:, :WIDTH]
+        return {metric.name: metric.compute(rows) for metric in METRICS} if len(rows) else {}
 
     def _tell(self) -> None:
         self._session.tell(self.message())

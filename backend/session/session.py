@@ -7,26 +7,12 @@ from collections.abc import Awaitable, Callable
 from itertools import count
 from typing import Any
 
-from pydantic import BaseModel, ValidationError
-
 from backend.compute.pool import JobFailedError, Pool
 from backend.presets.last import InForce
-from backend.problem import Problem, from_validation
-from backend.session.arguments import (
-    Applying,
-    EntryNumber,
-    ExcerptChange,
-    ExcerptNumber,
-    Loading,
-    Named,
-    Nothing,
-    Pace,
-    PinnedSpan,
-    Samples,
-    SavePoint,
-    Saving,
-)
+from backend.problem import Problem
+from backend.session.arguments import Loading
 from backend.session.changes import Changes
+from backend.session.commands import Commands
 from backend.session.control_link import ControlLink
 from backend.session.control_reports import ControlReports
 from backend.session.disturbance_watch import DisturbanceWatch
@@ -34,7 +20,7 @@ from backend.session.events import Event, EventLog, Kind, Severity
 from backend.session.excerpt import ExcerptsInMemory, ExcerptStore, NoRecordings, Recordings
 from backend.session.health import Health
 from backend.session.history_commands import HistoryCommands
-from backend.session.journal import Journal, Silent, Told, Unharming, wall_time
+from backend.session.journal import Journal, Silent, Unharming
 from backend.session.kept_run import KeptRun
 from backend.session.limit_watch import LimitWatch
 from backend.session.live_margins import LiveMargins
@@ -45,7 +31,6 @@ from backend.session.run_commands import RunCommands
 from backend.session.running_scenario import RunningScenario
 from backend.session.status import Status
 from backend.session.trigger import Trigger
-from backend.session.trigger_source import Arming
 from backend.settings import Settings
 from backend.store.database import Database
 from backend.telemetry.ring import Ring, RingReader
@@ -99,31 +84,7 @@ class Session:
         self.history = HistoryCommands(self)
         self.pins = Pins(self, recordings or NoRecordings(), excerpts or ExcerptsInMemory())
         self.trigger = Trigger(self)
-        self._commands: dict[str, tuple[type[BaseModel], Callable[[Any, str], Awaitable[Message]]]] = {
-            "tune": (Changes, self.parts.tune),
-            "set_reference": (Changes, self.parts.set_reference),
-            "set_stiffness": (Changes, self.parts.set_stiffness),
-            "set_disturbances": (Changes, self.parts.set_disturbances),
-            "load_scenario": (Loading, self.runs.load_scenario),
-            "pause": (Nothing, self.runs.pause),
-            "resume": (Nothing, self.runs.resume),
-            "step": (Samples, self.runs.step),
-            "reset": (Nothing, self.runs.reset),
-            "set_pace": (Pace, self.runs.set_pace),
-            "stop": (Nothing, self.runs.stop),
-            "undo": (Nothing, self.history.undo),
-            "redo": (Nothing, self.history.redo),
-            "save_point": (SavePoint, self.history.save_point),
-            "return_to": (EntryNumber, self.history.return_to),
-            "pin": (PinnedSpan, self.pins.pin),
-            "change_pin": (ExcerptChange, self.pins.change),
-            "unpin": (ExcerptNumber, self.pins.unpin),
-            "arm_trigger": (Arming, self.trigger.arm),
-            "disarm_trigger": (Nothing, self.trigger.disarm),
-            "save_preset": (Saving, self.presets.save),
-            "apply_preset": (Applying, self.presets.apply),
-            "delete_preset": (Named, self.presets.delete),
-        }
+        self.commands = Commands(self)
 
     @property
     def scenario(self) -> Scenario:
@@ -268,38 +229,11 @@ class Session:
 
     async def command(self, name: str, arguments: Any, by: str) -> Message:
         """Run the command `name` for page `by`. Raises Problem."""
-        asked_at, epoch, at_s = wall_time(), self.status.epoch, self._time_s()
-
-        def tell_journal(problem: str | None) -> None:
-            self.journal.command(Told(epoch, at_s, asked_at, by, name, arguments, problem is None, problem))
-
-        try:
-            answer = await self._carry_out(name, arguments, by)
-        except Problem as problem:
-            tell_journal(problem.detail)
-            raise
-        tell_journal(None)
-        return answer
-
-    async def _carry_out(self, name: str, arguments: Any, by: str) -> Message:
-        entry = self._commands.get(name)
-        if entry is None:
-            known = ", ".join(self._commands)
-            raise Problem(404, "Unknown command", f"There is no command {name!r}; known: {known}.")
-        model, method = entry
-        try:
-            validated = model.model_validate({} if arguments is None else arguments)
-        except ValidationError as error:
-            raise from_validation(error, model, consequence="Nothing was changed.") from error
-        return await method(validated, by)
-
-    def _time_s(self) -> float:
-        self.status.follow(self.ring.latest())
-        return self.status.time_s
+        return await self.commands.run(name, arguments, by)
 
     def command_names(self) -> list[str]:
         """Return the names of all commands."""
-        return list(self._commands)
+        return self.commands.names()
 
     async def tune(self, asked: Changes, by: str) -> Message:
         """Change the tuning, as the command does."""

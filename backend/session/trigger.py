@@ -121,13 +121,15 @@ class Trigger:
         try:
             kept = await self._session.pins.keep_capture(label, self._by, fired.epoch, from_s, to_s, fired.at_s)
         except Problem as problem:
-            self._excerpt = None
-            self._become("captured", f"Fired: {label}; not kept: {problem.detail}")
+            excerpt, sentence = None, f"Fired: {label}; not kept: {problem.detail}"
         else:
-            self._excerpt = kept.document() | {"epoch": fired.epoch}
-            self._become("captured", f"Captured: {label}.")
+            excerpt, sentence = kept.document() | {"epoch": fired.epoch}, f"Captured: {label}."
             self._session.log.add("trigger", f"captured: {label}", self._by, fired.epoch, fired.at_s)
-        if self._armed is armed and armed.repeat:
+        if self._armed is not armed:
+            return  # armed anew or disarmed meanwhile: what was captured is kept all the same
+        self._excerpt = excerpt
+        self._become("captured", sentence)
+        if armed.repeat:
             self._next = max(self._next, self._session.ring.written - 1)
             if self._crossing is not None:
                 self._crossing.forget()

@@ -21,6 +21,7 @@ export const KEYS = [
   { key: "1", shown: "1", does: "viewTune", text: "View: Tune" },
   { key: "2", shown: "2", does: "viewAnalyse", text: "View: Analyse" },
   { key: "4", shown: "4", does: "viewRecordings", text: "View: Recordings" },
+  { key: "5", shown: "5", does: "viewPresets", text: "View: Presets" },
   { key: "?", shown: "?", does: "showKeys", text: "These keys" },
 ];
 

@@ -22,6 +22,7 @@ import { PlotToolbar } from "./plots/plot_toolbar.js";
 import { PlotsOverlay } from "./plots/plots_overlay.js";
 import { RecordingsView } from "./recordings/recordings_view.js";
 import { Scene } from "./scene.js";
+import { PresetsView } from "./presets/presets_view.js";
 import { LiveSession } from "./session/live_session.js";
 import { rest } from "./session/rest.js";
 import { SideTabs } from "./side/side_tabs.js";
@@ -50,7 +51,7 @@ const edits = new Edits(session);
 const history = new ChangeHistory(session);
 const stack = new PlotStack(document.getElementById("charts"), new LiveSource(session), theme);
 const pins = new PinnedRuns(session, channelsOf(CHARTS));
-const pinWindow = () => pins.pin(stack.timeWindow.range, !stack.timeWindow.isHeld);
+const pinWindow = () => views.shown === "tune" && pins.pin(stack.timeWindow.range, !stack.timeWindow.isHeld);
 stack.source.ghosts = new Ghosts(pins, stack.timeWindow);
 const toolbar = new PlotToolbar(document.getElementById("plot-toolbar"), stack);
 const trigger = new Trigger(session);
@@ -74,6 +75,7 @@ const side = new SideTabs(document.getElementById("stability"), [
   { id: "pins", title: "Pinned", body: new PinPanel(pins, pinWindow).root },
 ]);
 new AnalyseView(document.getElementById("view-analyse"), { session, theme, views });
+new PresetsView(document.getElementById("view-presets"), { session, views });
 
 const recordings = new RecordingsView(document.getElementById("view-recordings"), { session, theme, views });
 
@@ -90,10 +92,11 @@ bindKeys({
   viewTune: () => views.show("tune"),
   viewAnalyse: () => views.show("analyse"),
   viewRecordings: () => views.show("recordings"),
+  viewPresets: () => views.show("presets"),
   showKeys: () => keysDialog.show(),
 });
 
-window.vssea = { session, recordings, store: session.store, latest: (name) => session.store.latest(name) };
+window.vssea = { session, pins, recordings, store: session.store, latest: (name) => session.store.latest(name) };
 
 pins.addEventListener("change", () => side.count("pins", pins.list.length));
 

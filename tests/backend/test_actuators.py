@@ -31,7 +31,7 @@ def test_the_live_plant_is_saved_with_where_its_values_come_from(session: httpx.
     provenance = found["content"]["provenance"]
     assert provenance["stiffness.inertia"]["source"] == "datasheet"
     assert provenance["link.inertia"]["source"] == "assumed"  # 0.12, not the default
-    assert found["summary"] == "J_l 0.12, J_e 3.3 kg·m²; 20 to 1000 N·m/rad"
+    assert found["summary"] == "link 0.12, motor 3.3 kg·m²; 20 to 1000 N·m/rad"
     assert [line["name"] for line in session.get("/api/actuators", params={"tag": "paper"}).json()] == ["of the paper"]
 
 

@@ -13,6 +13,7 @@ from typer.testing import CliRunner, Result
 
 from backend.cli import app
 from tests.backend.frame_decoder import decoded_all
+from tests.backend.run_recorded import recorded
 from vssea_core.scenario import Scenario
 from vssea_core.scenarios import SCENARIOS
 from vssea_core.simulation.metrics import metrics
@@ -127,3 +128,33 @@ def test_an_address_of_a_database_is_checked_and_never_repeated(monkeypatch: pyt
     assert outcome.exit_code == 2
     assert "database is no address of a database; expected sqlite:///" in outcome.stderr
     assert "secret" not in outcome.stderr
+
+
+def test_the_report_of_a_recording_is_written_by_file_or_by_id(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("VSSEA_RECORDINGS_DIR", str(tmp_path))
+    recorded(tmp_path / "run.mcap", SHORT, 200)
+    for place, name in ((str(tmp_path / "run.mcap"), "one.html"), ("run", "other.html")):
+        outcome = vssea("report", place, "-o", str(tmp_path / name))
+        assert outcome.exit_code == 0, outcome.stderr
+        assert (tmp_path / name).read_text("utf-8").startswith("<!doctype html>")
+
+
+@pytest.mark.parametrize(
+    ("place", "sentence"),
+    [
+        (
+            "nothing",
+            "nothing.mcap cannot be read: No such file or directory; expected an .mcap file or a recording's id",
+        ),
+        ("text", "text.mcap is not a recording: it does not begin as an MCAP file"),
+    ],
+)
+def test_what_is_no_recording_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, place: str, sentence: str
+) -> None:
+    monkeypatch.setenv("VSSEA_RECORDINGS_DIR", str(tmp_path))
+    (tmp_path / "text.mcap").write_text("a text that is longer than the magic of such a file")
+    outcome = vssea("report", place)
+    assert outcome.exit_code == 2
+    assert sentence in outcome.stderr
+    assert outcome.stderr.count("\n") == 1

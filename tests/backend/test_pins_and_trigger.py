@@ -10,6 +10,7 @@ import pytest
 
 from backend.problem import Problem
 from backend.session.excerpt import Excerpt, ExcerptsInMemory
+from backend.session.trigger_source import Arming
 from tests.backend.session_bench import SessionBench, on_bench
 from vssea_core.channels import INDEX
 from vssea_core.scenario import Scenario
@@ -218,6 +219,18 @@ def test_disarmed_it_waits_no_longer(data_dir: Path) -> None:
         await bench.ask("disarm_trigger")
         await watched(bench, 300)
         assert (trigger(bench)["state"], trigger(bench)["trigger"], pins(bench)) == ("off", None, [])
+
+    at_bench(data_dir, work)
+
+
+def test_what_is_armed_while_a_capture_is_being_kept_stays_armed(data_dir: Path) -> None:
+    async def work(bench: SessionBench) -> None:
+        await bench.ask("arm_trigger", source=LEVEL, after_s=0.0)
+        await bench.turns(200)
+        bench.session.trigger.watch()  # fires, and a thread begins to keep what was captured
+        await bench.session.trigger.arm(Arming.model_validate({"source": LEVEL}), "page 2")
+        await settled()
+        assert (trigger(bench)["state"], trigger(bench)["by"], len(pins(bench))) == ("armed", "page 2", 1)
 
     at_bench(data_dir, work)
 

@@ -1,6 +1,7 @@
 """The way from the scene process to a browser: the process, the relay and the page, against a small server of ours."""
 
 import asyncio
+import math
 import multiprocessing
 import socket
 from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine
@@ -22,6 +23,9 @@ from backend.scene.actuator_scene import ScenePose
 from backend.scene.page import scene_page
 from backend.scene.process import SceneProcess, follow
 from backend.scene.relay import scene_routes
+from backend.scene.replay import ReplayScene
+from backend.telemetry.ring import RingReader
+from vssea_core.channels import CHANNELS, INDEX
 
 OURS = Origin("http://ours.test")
 VISER = Subprotocol("viser-v0.0.0")
@@ -38,9 +42,9 @@ def from_us(websocket: WebSocket) -> bool:
     return websocket.headers.get("origin") == OURS
 
 
-def get(path: str, port: int | None) -> Response:
+def get(path: str, port: int | None, place: str = "/scene") -> Response:
     """The answer to a GET while the scene has that port."""
-    app = Starlette(routes=scene_routes(lambda: port, from_us))
+    app = Starlette(routes=scene_routes(lambda: port, from_us, place=place))
 
     async def ask() -> Response:
         async with AsyncClient(transport=ASGITransport(app), base_url=OURS) as client:
@@ -265,3 +269,37 @@ def test_a_scene_that_keeps_failing_is_left_off_and_says_so() -> None:
         await process.stop()
 
     run(check())
+
+
+def follow_the_ring(ring_name: str, pipe: Connection) -> None:
+    """A scene process that reports the link's position [mrad] as its port."""
+    reader = RingReader(ring_name)
+    while reader.latest() is None:
+        pass
+    newest = reader.latest()
+    pipe.send(0 if newest is None else round(1e3 * newest[INDEX["link_position"]]))
+    pipe.poll(LIMIT_S)
+    reader.close()
+
+
+def test_the_scene_of_a_recording_starts_at_its_first_use_and_is_shown_the_sample() -> None:
+    async def check() -> None:
+        scene = ReplayScene(follow_the_ring)
+        assert scene.port is None
+        assert "appears here when one is opened" in scene.sentence
+        await scene.stop()
+        row = [0.0] * len(CHANNELS)
+        row[INDEX["link_position"]], row[INDEX["stiffness"]] = 1.234, math.nan
+        scene.show(row)
+        await until(lambda: scene.port is not None)
+        assert scene.port == 1234
+        scene.show(row)
+        await scene.stop()
+        assert not [child for child in multiprocessing.active_children() if child.name == "vssea scene"]
+
+    run(check())
+
+
+def test_the_scene_of_a_recording_has_a_place_of_its_own() -> None:
+    assert "The 3D scene is starting" in get("/replay/", None, "/replay").text
+    assert get("/scene/", None, "/replay").status_code == 404

@@ -104,7 +104,8 @@ export class HistoryPanel {
   async #resetToPreset() {
     const { session } = this;
     try {
-      await session.command("apply_preset", { name: session.document.preset.name });
+      const { name, version } = session.document.preset;
+      await session.command("apply_preset", { name, version });
     } catch (refusal) {
       session.note(refusal.message);
     }

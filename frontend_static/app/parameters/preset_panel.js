@@ -1,15 +1,19 @@
 import { element, setText } from "../element.js";
 import { inputText } from "../quantity.js";
+import { ApplyDialog } from "../presets/apply_dialog.js";
+import { StaleDialog } from "../presets/stale_dialog.js";
 import { rest } from "../session/rest.js";
 import { wordOf } from "./choice_word.js";
 import { LinePanel } from "./panel.js";
 
-/** Saved tunings: save, apply, delete, and what was changed since. */
+/** Saved tunings: save, apply, archive, and what was changed since. The view Presets shows all that is known of them. */
 export class PresetPanel {
   #presets = [];
 
   constructor(layout, desk) {
     this.desk = desk;
+    this.applyDialog = new ApplyDialog();
+    this.staleDialog = new StaleDialog();
     this.name = element("input", {
       type: "text",
       "aria-label": "Preset name",
@@ -26,7 +30,7 @@ export class PresetPanel {
     );
     this.select = element("select", { "aria-label": "Saved presets" });
     this.applyButton = element("button", { type: "button", click: () => this.#apply() }, "Apply");
-    this.deleteButton = element("button", { type: "button", class: "quiet", click: () => this.#delete() }, "Delete");
+    this.deleteButton = element("button", { type: "button", class: "quiet", title: "Out of the list; the view Presets has it in its archive", click: () => this.#delete() }, "Archive");
     this.changes = element("p", { class: "preset-changes", hidden: true });
     this.saved = element("div", { class: "line", hidden: true }, this.select, this.applyButton, this.deleteButton);
     this.root = new LinePanel(
@@ -46,16 +50,37 @@ export class PresetPanel {
     this.#sayChanges();
   }
 
-  /** Save under the name in the box; without one, ask for it. */
+  /** Save under the name in the box as a new version; without a name, ask for it. */
   async save() {
     const name = this.name.value.trim();
     if (!name) return this.name.focus();
-    await this.#command("save_preset", { name });
+    const { preset } = this.desk.document;
+    const known = preset?.name === name ? preset : this.#presets.find((line) => line.name === name);
+    await this.#save(name, known?.revision);
+  }
+
+  async #save(name, revision) {
+    try {
+      await this.desk.session.command("save_preset", { name, ...(revision && { revision }) });
+    } catch (refusal) {
+      const current = refusal.problem?.status === 412 ? refusal.problem.current : null;
+      if (!current) return this.desk.session.note(refusal.message);
+      if (await this.staleDialog.ask(refusal.message)) return this.#save(name, current.revision);
+    }
+    await this.#fetch();
   }
 
   async #apply() {
-    if (!(await this.#command("apply_preset", { name: this.select.value }))) return;
-    this.name.value = this.select.value;
+    const name = this.select.value;
+    let paths = null;
+    try {
+      const difference = await rest("GET", `/api/presets/${encodeURIComponent(name)}/difference`);
+      if (!difference.same) paths = await this.applyDialog.ask(name, difference);
+    } catch (refusal) {
+      return this.desk.session.note(refusal.message);
+    }
+    if (paths === undefined || !(await this.#command("apply_preset", { name, ...(paths && { paths }) }))) return;
+    this.name.value = name;
   }
 
   #delete() {

@@ -98,7 +98,8 @@ class PinLine {
     if (document.activeElement !== this.name) this.name.value = excerpt.label;
     this.name.title = excerpt.label;
     this.letGo.setAttribute("aria-label", `Let go of ${excerpt.label}`);
-    const by = excerpt.by === this.runs.session.you ? "you" : excerpt.by;
+    const isOurs = excerpt.by === this.runs.session.you && Date.parse(excerpt.created_at) > performance.timeOrigin;
+    const by = isOurs ? "you" : excerpt.by; // a server that was restarted counts its pages anew
     const kind = excerpt.kind === "trigger" ? "trigger, " : "";
     const when = new Date(excerpt.created_at).toLocaleTimeString([], { hour12: false });
     setText(this.when, `${kind}${fixed(excerpt.from_s, 1)} to ${fixed(excerpt.to_s, 1)} s, ${when}, ${by}`);

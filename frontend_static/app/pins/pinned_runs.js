@@ -50,6 +50,7 @@ export class PinnedRuns extends EventTarget {
       run.take(excerpt);
       this.#runs.set(excerpt.id, run);
     }
+    for (const [id, run] of before) if (!this.#runs.has(id)) run.end();
     this.#changed();
   }
 

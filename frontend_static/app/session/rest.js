@@ -2,13 +2,13 @@ import { Refusal } from "./refusal.js";
 
 const TIME_LIMIT_MS = 8000;
 
-/** One REST call, answered within `timeLimitMs`. @returns {Promise<any>} the answer's JSON @throws {Refusal} with the server's problem, or why there is none */
-export async function rest(method, path, body, timeLimitMs = TIME_LIMIT_MS) {
+/** One REST call, answered within `timeLimitMs`. @param {Object<string, string>} [headers] such as If-Match @returns {Promise<any>} the answer's JSON @throws {Refusal} with the server's problem, or why there is none */
+export async function rest(method, path, body, timeLimitMs = TIME_LIMIT_MS, headers = {}) {
   let response;
   try {
     response = await fetch(path, {
       method,
-      headers: body === undefined ? {} : { "content-type": "application/json" },
+      headers: body === undefined ? headers : { "content-type": "application/json", ...headers },
       body: body === undefined ? undefined : JSON.stringify(body),
       signal: AbortSignal.timeout(timeLimitMs),
     });
@@ -17,8 +17,10 @@ export async function rest(method, path, body, timeLimitMs = TIME_LIMIT_MS) {
       error.name === "TimeoutError" ? `no answer within ${timeLimitMs / 1000} s` : "the server cannot be reached";
     throw new Refusal({ title: "No answer", detail: `${method} ${path}: ${why}.` });
   }
-  const answer = await response.json().catch(() => null);
+  const answer = await response.json().catch(() => undefined);
   if (!response.ok)
     throw new Refusal(answer?.detail ? answer : { detail: `${method} ${path} answered ${response.status}.` });
+  if (answer === undefined)
+    throw new Refusal({ title: "No answer", detail: `${method} ${path}: the answer broke off. Try again.` });
   return answer;
 }
