@@ -56,9 +56,21 @@ class LegendItem {
     setText(this.value, fixed(value * factor, decimals));
     this.delta.hidden = Number.isNaN(difference);
     setText(this.delta, Number.isNaN(difference) ? "" : `Δ ${fixed(difference * factor, decimals)}`);
+    this.#showOthers(others, (value) => fixed(value * factor, decimals));
+  }
+
+  /** Each with the room that the longest value needs, so that what follows keeps its place. */
+  #showOthers(others, words) {
     this.others.hidden = !others.length;
-    const words = others.map((other) => `${other.overlay.label}: ${fixed(other.value * factor, decimals)}`);
-    setText(this.others, words.join("  "));
+    while (this.others.childElementCount > others.length) this.others.lastElementChild.remove();
+    while (this.others.childElementCount < others.length)
+      this.others.append(element("span", {}, element("span", {}), element("span", { class: "legend-other" })));
+    others.forEach(({ overlay, value }, i) => {
+      const [label, figure] = this.others.children[i].children;
+      setText(label, `${overlay.label}:`);
+      setText(figure, words(value));
+      figure.style.minWidth = this.value.style.minWidth;
+    });
   }
 
   /** Keep room for the longest value of the scale. */

@@ -2,6 +2,7 @@ import { element, setText } from "../element.js";
 import { compact, inputText, readNumber } from "../quantity.js";
 import { Refusal } from "../session/refusal.js";
 
+const BY_UNIT = "unit";
 const FACTORS = [
   ["as it is", 1],
   ["° → rad", Math.PI / 180],
@@ -108,25 +109,26 @@ export class ImportDialog {
   #show(preview) {
     setText(this.summary, preview.rows === undefined ? "" : spanWords(preview));
     if (this.body.childElementCount) return;
-    const left = preview.ignored.map((heading) => ({ heading, channel: null, factor: 1 }));
+    const left = preview.ignored.map((heading) => ({ heading, channel: null, factor: null }));
     this.body.replaceChildren(...[...preview.columns, ...left].map((column) => this.#line(column)));
   }
 
-  #line({ heading, channel, factor }) {
+  #line({ heading, channel, factor: found }) {
     const is = element("select", { "aria-label": `${heading} is` }, new Option("leave out", ""), new Option("time [s]", "time"));
     const channels = [...this.session.channels.values()].filter(({ name }) => name !== "time");
     is.append(...channels.map(({ name, label, unit }) => new Option(`${label}${unit ? ` [${unit}]` : ""}`, name)));
     is.value = channel ?? "";
-    const by = element("select", { "aria-label": `factor of ${heading}` }, ...FACTORS.map(([text, value]) => new Option(text, value)), new Option("other…", "other"));
+    const by = element("select", { "aria-label": `factor of ${heading}` }, new Option("by its unit", BY_UNIT), ...FACTORS.map(([text, value]) => new Option(text, value)), new Option("other…", "other"));
     const own = element("input", { type: "text", class: "number", "aria-label": `other factor of ${heading}`, hidden: true, value: "1" });
-    const known = FACTORS.find(([, value]) => Math.abs(value - factor) <= 1e-9 * value);
-    by.value = known ? String(known[1]) : "other";
-    own.hidden = known !== undefined;
-    own.value = inputText(factor);
+    const known = FACTORS.find(([, value]) => Math.abs(value - found) <= 1e-9 * value);
+    by.value = found === null ? BY_UNIT : known ? String(known[1]) : "other";
+    own.hidden = by.value !== "other";
+    own.value = inputText(found ?? 1);
     const change = () => {
       own.hidden = by.value !== "other";
       const value = by.value === "other" ? readNumber(own.value) : Number(by.value);
-      this.#columns[heading] = is.value ? { channel: is.value, factor: value } : { channel: null };
+      const factor = by.value === BY_UNIT ? {} : { factor: value };
+      this.#columns[heading] = is.value ? { channel: is.value, ...factor } : { channel: null };
       this.#preview();
     };
     for (const control of [is, by, own]) control.addEventListener("change", change);

@@ -17,7 +17,7 @@ const CHOSEN_FIRST = ["error", "motor_torque"];
 const PATIENCE_MS = 300;
 const DECADES = 9; // shown below the highest density
 const MOST_POINTS = 1200; // drawn of a density, evenly on a logarithmic axis
-const TIME_LIMIT_MS = 30_000;
+const TIME_LIMIT_MS = 120_000; // of a long span on a busy server
 
 /** Amplitude spectral densities of chosen channels over the shown span, of the recording and of those over it. */
 export class Spectra {
