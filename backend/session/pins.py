@@ -41,7 +41,7 @@ class Pins:
             try:
                 kept = await asyncio.to_thread(self._store.list)
             except Problem as problem:
-                logger.warning("pinned runs cannot be read: %s", problem.detail)
+                logger.info("pinned runs cannot be read: %s", problem.detail)  # the log of the session says it already
                 return
             before, self._excerpts = self._excerpts, {excerpt.id: excerpt for excerpt in kept}
         if before != self._excerpts:

@@ -79,12 +79,20 @@ class Stuck:
         self.closed = code, reason
 
 
+def _pins() -> dict[str, list[str]]:
+    return {"pins": []}
+
+
 def test_a_page_that_takes_nothing_is_let_go_with_a_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(live, "SEND_LIMIT_S", 0.01)
     stuck, log = Stuck(), SimpleNamespace(last=lambda count: [])
-    margins = SimpleNamespace(newest=None)
-    session = SimpleNamespace(listeners=set(), log=log, margins=margins, run_id="run", snapshot=dict, document=dict)
-    page = live.Page(stuck, session, "page 1")  # type: ignore[arg-type]
+    parts = {
+        "margins": SimpleNamespace(newest=None), "history": SimpleNamespace(greeting=dict), "pins": SimpleNamespace(message=_pins),
+        "trigger": SimpleNamespace(message=dict), "log": log,
+    }  # fmt: skip
+    session = SimpleNamespace(listeners=set(), run_id="run", snapshot=dict, document=dict, **parts)
+    recorder = SimpleNamespace(document=dict)
+    page = live.Page(stuck, session, recorder, "page 1")  # type: ignore[arg-type]
     asyncio.run(asyncio.wait_for(page.serve(0.0), 10.0))
     assert stuck.closed == (1013, "This page was too slow.")
     assert not session.listeners
