@@ -54,7 +54,7 @@ export class RecordingRow {
   show(recording) {
     this.recording = recording;
     const name = nameOf(recording);
-    setText(this.name, recording.name || recording.scenario);
+    setText(this.name, recording.name || recording.scenario || "no name");
     this.name.title = name;
     const { text, tone } = stateWord(recording);
     setText(this.state, text);
