@@ -25,6 +25,9 @@ SHORTEST_RUN_S = 0.25
 BEGIN_LIMIT_S = 5.0
 """So long samples wait for the word of what run they belong to; the ring holds a minute."""
 SYNC_EVERY_S = 1.0
+RETRY_S = 10.0
+LEAST_ROOM = 20_000_000
+"""A recording that a disk has stopped is begun again after so long at the earliest, and with so many bytes to begin in."""
 LATE_S = 1.5
 """So long the recording of a run that is over stays open: an event is told once it has rested."""
 Free = Callable[[Path], int]
@@ -64,6 +67,7 @@ class Writing:
         self._lost = 0
         self._held: str | None = None
         self._stopped: str | None = None
+        self._retry_at = -np.inf
         self._waiting_since: float | None = None
         self._synced_at = 0.0
 
@@ -98,17 +102,19 @@ class Writing:
         """Write all that is new. A disk that refuses stops the recording, and a later turn goes on when it can."""
         self._now_s = now_s
         try:
-            why = self._held or self._lacking_room()
+            why = self._held or self._lacking_room() or (self._stopped if now_s < self._retry_at else None)
             if why is None:
-                self._stop_is(None)
                 self._write_samples(now_s)
                 self._write_notes()
+                if self._file is not None:
+                    self._stop_is(None)
                 if self._over is not None and now_s >= self._over[2]:
                     self._end_over()
                 self._sync_now_and_then(now_s)
             else:
                 self._leave(why)
         except OSError as error:
+            self._retry_at = now_s + RETRY_S
             self._leave(f"{self._folder} cannot be written: {error.strerror or error}")
         self._tell(self._state())
 
@@ -244,7 +250,7 @@ class Writing:
 
     def _lacking_room(self) -> str | None:
         free = self._free(self._folder)
-        needed = self._keep_free * (1.1 if self._stopped else 1.0)
+        needed = max(1.1 * self._keep_free, LEAST_ROOM) if self._stopped else self._keep_free
         if free >= needed:
             return None
         return (
@@ -258,6 +264,10 @@ class Writing:
         self._over = None
         for file in files:
             if file is None:
+                continue
+            if not file.samples:
+                file.close()
+                file.path.unlink(missing_ok=True)
                 continue
             try:
                 self._finish(file, why)
