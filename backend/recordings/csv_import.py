@@ -125,10 +125,7 @@ def _guess(heading: str) -> Column | None:
     if channel is None:
         return None
     if factor is None:
-        raise ValueError(
-            f"the unit of {heading!r} is not one of {units_for(channel)}; give its factor in the mapping of columns: "
-            f'{{"{heading}": {{"channel": "{channel}", "factor": ...}}}}'
-        )
+        raise ValueError(_unknown_unit(heading, channel))
     return Column(heading, channel, unit, factor, 0.0, guessed=True)
 
 
@@ -146,6 +143,8 @@ def _mapped(heading: str, asked: dict[str, Any]) -> Column | None:
     offset: Any = asked.get("offset", 0.0)
     if factor is None:
         factor = factor_of(unit, channel)
+    if factor is None:
+        raise ValueError(_unknown_unit(heading, channel))
     for name, value in (("factor", factor), ("offset", offset)):
         is_number = isinstance(value, (int, float)) and not isinstance(value, bool) and np.isfinite(value)
         if not is_number:
@@ -153,6 +152,13 @@ def _mapped(heading: str, asked: dict[str, Any]) -> Column | None:
                 f"the {name} of {heading!r} is {value!r}; expected a number that turns it into {channel}'s unit"
             )
     return Column(heading, channel, unit, float(factor), float(offset), guessed=False)
+
+
+def _unknown_unit(heading: str, channel: str) -> str:
+    return (
+        f"the unit of {heading!r} is not one of {units_for(channel)}; give its factor in the mapping of columns: "
+        f'{{"{heading}": {{"channel": "{channel}", "factor": ...}}}}'
+    )
 
 
 def _scaled(table: TextTable, column: Column) -> NDArray[np.float64]:

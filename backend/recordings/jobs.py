@@ -4,6 +4,8 @@ What needs a library that is slow to import brings it in at its first use, so th
 """
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -54,9 +56,29 @@ def _opened(path: str, inode: int, size: int, changed_ns: int) -> Recording:
 
 
 def opened(path: str) -> Recording:
-    """Return the recording at a path; its records are looked through again only if the file has changed."""
-    status = Path(path).stat()
-    return _opened(path, status.st_ino, status.st_size, status.st_mtime_ns)
+    """Return the recording at a path; its records are looked through again only if the file has changed.
+
+    Raises ValueError if it is none, or no more.
+    """
+    try:
+        status = Path(path).stat()
+        return _opened(path, status.st_ino, status.st_size, status.st_mtime_ns)
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise ValueError(
+            f"the recording {Path(path).stem} cannot be read: {why}; GET /api/recordings lists them"
+        ) from error
+
+
+@contextmanager
+def room_needed() -> Iterator[None]:
+    """Turn what a disk refuses into a sentence."""
+    try:
+        yield
+    except OSError as error:
+        raise ValueError(
+            f"it cannot be written: {error.strerror or error}; make room on the disk and try again"
+        ) from error
 
 
 def summarise(path: str, cache: str | None) -> Document:
@@ -87,7 +109,9 @@ def export(
     """Return media type and path of a new file in `folder`."""
     from backend.recordings import exports
 
-    return exports.export(opened(path), form, channels, from_s, to_s, folder, progress)
+    recording = opened(path)
+    with room_needed():
+        return exports.export(recording, form, channels, from_s, to_s, folder, progress)
 
 
 def preview_csv(path: str, columns: Document | None, sample_rate_hz: float | None) -> Document:
@@ -103,7 +127,8 @@ def import_csv(
     """Write a rig's own log as a recording; return where."""
     from backend.recordings.csv_import import csv_import
 
-    return str(csv_import(Path(path), Path(target), head, columns, sample_rate_hz))
+    with room_needed():
+        return str(csv_import(Path(path), Path(target), head, columns, sample_rate_hz))
 
 
 def plan_replay(path: str, to_s: float | None) -> tuple[Scenario, int]:
@@ -115,7 +140,9 @@ def plan_replay(path: str, to_s: float | None) -> tuple[Scenario, int]:
 def keep_simulated(path: str, scenario: Scenario, tuning_id: int, rows: str, target: str) -> bytes:
     """Write the rows of a simulation as a recording; return its id and the residual as JSON."""
     replayed = Replayed(scenario, tuning_id)
-    found = keep_simulation(opened(path), replayed, np.load(rows), Path(target))
+    recording, simulated = opened(path), np.load(rows)
+    with room_needed():
+        found = keep_simulation(recording, replayed, simulated, Path(target))
     return json.dumps({"kind": "simulate_recording", "recording": Path(target).stem, **found}).encode()
 
 
@@ -141,7 +168,9 @@ def report_of(path: str, folder: str, cache: str) -> str:
     """Return the path of the report, one HTML page, in `folder`."""
     from backend.recordings.report import report
 
-    return report(opened(path), Path(folder), Path(cache))
+    recording = opened(path)
+    with room_needed():
+        return report(recording, Path(folder), Path(cache))
 
 
 def pose_at(path: str, time_s: float) -> list[float]:

@@ -33,7 +33,18 @@ def keep_simulation(recording: Recording, replayed: Replayed, rows: Rows, target
     }  # fmt: skip
     unfinished = target.with_name(f"{target.stem}.new{BEGINNING}")
     file = RecordingFile.create(unfinished, head)
-    end_s = float(rows[-1, INDEX["time"]])
+    try:
+        _write(file, recording, replayed, rows)
+        unfinished.replace(target)
+    except BaseException:
+        file.close()
+        unfinished.unlink(missing_ok=True)
+        raise
+    return residual(recording, rows, period_s)
+
+
+def _write(file: RecordingFile, recording: Recording, replayed: Replayed, rows: Rows) -> None:
+    end_s, period_s = float(rows[-1, INDEX["time"]]), replayed.scenario.timing.sample_time_s
     content = {"n": -1, "at_s": 0.0, "tuning_id": replayed.tuning_id, "scenario": scenario_document(recording)}
     changes = [change for change in recording.documents(CHANGES) if change["at_s"] <= end_s]
     file.append_documents(
@@ -45,8 +56,6 @@ def keep_simulation(recording: Recording, replayed: Replayed, rows: Rows, target
         samples[:, :WIDTH], samples[:, EPOCH], samples[:, PERIOD_S] = part, 1.0, period_s
         file.append_samples(samples, first)
     file.finish(reason="simulated", lost="0")
-    unfinished.replace(target)
-    return residual(recording, rows, period_s)
 
 
 def residual(recording: Recording, rows: Rows, period_s: float) -> dict[str, Any]:

@@ -154,7 +154,11 @@ def test_a_preview_says_what_would_be_read_and_writes_nothing(tmp_path: Path) ->
             {"mapping": {"q": {"channel": "error", "factor": "x"}}},
             "the factor of 'q' is 'x'; expected a number",
         ),
-        ("t,q [A]\n0,1\n", {"mapping": {"q [A]": {"channel": "error"}}}, "the factor of 'q \\[A\\]' is None"),
+        (
+            "t,q [A]\n0,1\n",
+            {"mapping": {"q [A]": {"channel": "error"}}},
+            "the unit of 'q \\[A\\]' is not one of rad, mrad",
+        ),
         ("t,q\n0,1\n", {"sample_rate_hz": 0.0}, "the sample rate is 0 Hz; expected above 0"),
     ],
 )

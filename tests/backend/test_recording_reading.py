@@ -206,3 +206,16 @@ def test_an_opened_recording_is_opened_anew_when_its_file_has_changed(tmp_path: 
     path.unlink()
     with_gaps(path, [(0, noise_rows(20))])
     assert jobs.opened(str(path)).samples == 20
+
+
+def test_a_recording_that_is_no_more_and_a_full_disk_are_told(tmp_path: Path) -> None:
+    with pytest.raises(
+        ValueError, match="the recording run cannot be read: No such file or directory; GET /api/recordings"
+    ):
+        jobs.pose_at(str(tmp_path / "run.mcap"), 0.0)
+    with_gaps(tmp_path / "run.mcap", [(0, noise_rows(10))])
+    nowhere = str(tmp_path / "nowhere")
+    with pytest.raises(
+        ValueError, match="it cannot be written: No such file or directory; make room on the disk and try again"
+    ):
+        jobs.report_of(str(tmp_path / "run.mcap"), nowhere, nowhere)
