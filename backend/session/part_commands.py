@@ -1,5 +1,6 @@
 """The commands that change one part of the running scenario: tuning, reference, stiffness, disturbances."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from backend.loop import messages
@@ -86,8 +87,9 @@ class PartCommands:
 
     async def _prepared(self, new: Scenario, parts: list[str]) -> Any:
         """Return what the control process needs of a scenario, None if the parts cannot make it unstable."""
-        matters = new.sequence or {"tuning", "stiffness_reference"} & set(parts)
-        return await planned(self._session.design, new) if matters else None
+        ahead = self._session.running.ahead(new)
+        matters = ahead.sequence or {"tuning", "stiffness_reference"} & set(parts)
+        return await planned(self._session.design, ahead) if matters else None
 
     async def _apply(self, new: Scenario, part: str, prepared: Any, asked: Changes, by: str) -> float:
         session = self._session
@@ -140,9 +142,11 @@ class PartCommands:
     async def _plan_sequence(self) -> None:
         """Let what is left of the sequence start from the changed scenario."""
         session = self._session
-        if session.scenario.sequence:
-            prepared = await planned(session.design, session.scenario)
-            await session.link.command(messages.Plan(prepared.followers))
+        made, ahead = session.running.followed, session.running.ahead(session.scenario)
+        if ahead.sequence:
+            prepared = await planned(session.design, ahead)
+            followers = tuple(replace(follower, index=made + follower.index) for follower in prepared.followers)
+            await session.link.command(messages.Plan(followers))
 
     def kind_of(self, part: str) -> "Kind":
         """Return the kind of the events that tell of changes of a part."""

@@ -21,10 +21,17 @@ class RunningScenario:
 
     def __init__(self, scenario: Scenario) -> None:
         self.now = self.beginning = scenario
+        self.followed = 0
+        """Entries of the sequence that have been made."""
 
     def load(self, scenario: Scenario) -> None:
         """Begin anew with a scenario."""
         self.now = self.beginning = scenario
+        self.followed = 0
+
+    def ahead(self, scenario: Scenario) -> Scenario:
+        """Return a scenario with what is left of the sequence: what was made and changed again since is not made twice."""
+        return scenario.model_copy(update={"sequence": self.now.sequence[self.followed :]})
 
     def adopt(self, part: str, new: Scenario, asked: Changes) -> None:
         """Take over one part of `new`, which `asked` made: the sequence may have changed another one meanwhile.
@@ -42,6 +49,7 @@ class RunningScenario:
     def follow(self, index: int) -> list[PartChange]:
         """Make the change that stands at a place of the sequence, and return what became different, part by part."""
         changed = dict(self.now.sequence[index].changes)
+        self.followed = index + 1
         before, self.now = self.now, after_change(self.now, changed)
         parts = dict.fromkeys(path.split(".")[0] for path in changed)
         return [PartChange(part, part_differences(before, self.now, part)) for part in parts]
