@@ -114,7 +114,7 @@ def recording_routes(
     async def spectrum(recording: str, channels: str, from_s: Seconds = None, to_s: Seconds = None) -> Response:
         """Return power spectral densities of channels over a span."""
         path = str(library.path_of(recording))
-        content = await read(worker.run("spectrum_of", path, channels_in(channels), *limits_of(from_s, to_s)))
+        content = await read(pool.archive.run("spectrum_of", path, channels_in(channels), *limits_of(from_s, to_s)))
         return Response(content, media_type="application/json")
 
     @router.get("/{recording}/difference")

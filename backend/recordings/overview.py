@@ -98,7 +98,7 @@ def all_rows(
 
 def overview(recording: Recording, cache: Path) -> Blocks:
     """Return the overview of a recording: kept in the folder `cache`, gone on with, or made."""
-    kept, others = _kept(recording.path, cache)
+    kept, others = _kept(recording, cache)
     if kept.exists():
         with contextlib.suppress(OSError, ValueError):
             return np.load(kept)
@@ -108,13 +108,13 @@ def overview(recording: Recording, cache: Path) -> Blocks:
     for numbers, rows in all_rows(recording, since_s):
         builder.take(numbers, rows)
     blocks = builder.blocks()
-    keep(recording.path, cache, blocks)
+    keep(recording, cache, blocks)
     return blocks
 
 
-def keep(path: Path, cache: Path, blocks: Blocks) -> None:
+def keep(recording: Recording, cache: Path, blocks: Blocks) -> None:
     """Keep an overview for the next time; a disk that refuses costs that time only."""
-    kept, others = _kept(path, cache)
+    kept, others = _kept(recording, cache)
     with contextlib.suppress(OSError):
         cache.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=cache, suffix=".part", delete=False) as file:
@@ -127,10 +127,10 @@ def keep(path: Path, cache: Path, blocks: Blocks) -> None:
             old.unlink(missing_ok=True)
 
 
-def _kept(path: Path, cache: Path) -> tuple[Path, list[Path]]:
-    """Return where the overview of a recording as it is now is kept, and those of what it was before."""
-    status = path.stat()
-    file = f"{path.stem}@{status.st_ino}"
+def _kept(recording: Recording, cache: Path) -> tuple[Path, list[Path]]:
+    """Return where the overview of a recording as it was opened is kept, and those of what it was before."""
+    status = recording.status
+    file = f"{recording.path.stem}@{status.st_ino}"
     kept = cache / f"{file}@{status.st_size}@{status.st_mtime_ns}.npy"
     pattern = re.compile(rf"{re.escape(file)}@(\d+)@\d+\.npy")
     others = [

@@ -42,6 +42,7 @@ class Recording:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self.status = path.stat()  # before it is looked through: what grows meanwhile is a later state
         self.damaged = 0
         found = scan(path)
         if HEAD not in found.metadata:

@@ -26,7 +26,7 @@ def summary(recording: Recording, cache: Path | None = None) -> Document:
         builder.take(numbers, rows)
     blocks = builder.blocks()
     if cache is not None:
-        keep(recording.path, cache, blocks)
+        keep(recording, cache, blocks)
     return {
         "facts": facts(recording, blocks),
         "metrics": figures.metrics(),

@@ -131,6 +131,21 @@ def test_the_overview_is_made_once_and_gone_on_with_as_the_recording_grows(
     assert grown["count"][:-1].tolist() == [BLOCK] * (len(grown) - 1)
 
 
+def test_an_overview_of_what_grew_while_it_was_made_is_not_taken_for_one_of_all(tmp_path: Path) -> None:
+    from backend.recordings.recording_file import RecordingFile
+    from tests.backend.run_recorded import HEAD, as_samples
+
+    path, cache = tmp_path / "run.mcap", tmp_path / "cache"
+    file = RecordingFile.create(path, HEAD | {"sample_time_s": "0.001"})
+    rows = noise_rows(10_000)
+    file.append_samples(as_samples(rows[:6000], 1e-3), 0)
+    opened = Recording(path)
+    file.append_samples(as_samples(rows[6000:], 1e-3), 6000)
+    file.close()
+    assert overview(opened, cache)["count"].sum() == 6000
+    assert overview(Recording(path), cache)["count"].sum() == 10_000
+
+
 def test_a_cache_that_cannot_be_written_costs_nothing_but_time(long: Recording, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     assert overview(long, tmp_path / "file")["count"].sum() == 40_000
