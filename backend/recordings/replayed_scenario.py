@@ -8,9 +8,10 @@ import numpy as np
 from backend.recordings.layout import CHANGES, COMMANDS, EVENTS, SCENARIO
 from backend.recordings.reader import SAME_INSTANT_S, Recording
 from backend.recordings.timeline import name_of, scenario_document, validated
-from vssea_core.scenario import MAX_SAMPLES, Scenario
+from vssea_core.scenario import MAX_SAMPLES, Scenario, TimedChange
 
-MOST_CHANGES = 32
+MOST_CHANGES = 2000
+"""Each is designed anew. A scenario that is written down has fewer, but a dragged slider makes thirty a second."""
 LONGEST_S = 120.0
 LARGEST_CHANGE = 64
 Document = dict[str, Any]
@@ -47,11 +48,9 @@ def replayed_scenario(recording: Recording, to_s: float | None = None) -> Replay
     changes = recording.documents(CHANGES)
     _refuse_long(recording, changes, end_s, period_s, is_asked=to_s is not None)
     samples = int(np.floor(end_s / period_s + 1e-6)) + 1
-    document["sequence"] = _sequence(
-        document, [change for change in changes if change["at_s"] <= end_s + SAME_INSTANT_S]
-    )
-    document["duration_s"] = samples * period_s
-    scenario = validated(document, name)
+    sequence = _sequence(document, [change for change in changes if change["at_s"] <= end_s + SAME_INSTANT_S])
+    document["sequence"], document["duration_s"] = [], samples * period_s
+    scenario = validated(document, name).model_copy(update={"sequence": sequence})
     begun = recording.documents(SCENARIO)[0]
     return Replayed(scenario, int(begun.get("tuning_id", 1)))
 
@@ -66,9 +65,7 @@ def _refuse_long(
     ]
     if len(changes) > MOST_CHANGES:
         over_s = float(changes[MOST_CHANGES]["at_s"])
-        limits.append(
-            (over_s - period_s, f"a scenario's sequence has at most {MOST_CHANGES} changes, and more were made")
-        )
+        limits.append((over_s - period_s, f"at most {MOST_CHANGES} changes are simulated again, and more were made"))
     stopped_s = stop_time(recording)
     if stopped_s is not None:
         limits.append((stopped_s - period_s, f"STOP was pressed at {stopped_s:g} s, and a scenario has no STOP"))
@@ -100,7 +97,7 @@ def stop_time(recording: Recording) -> float | None:
     return min(times, default=None)
 
 
-def _sequence(document: Document, changes: list[Document]) -> list[Document]:
+def _sequence(document: Document, changes: list[Document]) -> tuple[TimedChange, ...]:
     """Return the recorded changes as entries of a sequence, each with the paths whose values it changed."""
     parts = {name: value for name, value in document.items() if isinstance(value, dict)}
     entries = []
@@ -108,8 +105,9 @@ def _sequence(document: Document, changes: list[Document]) -> list[Document]:
         part, after = change["part"], change["document"]
         paths = paths_between(parts[part], after, part)
         parts[part] = after
-        entries.append({"at_s": change["at_s"], "changes": paths if len(paths) <= LARGEST_CHANGE else {part: after}})
-    return entries
+        paths = paths if len(paths) <= LARGEST_CHANGE else {part: after}
+        entries.append(TimedChange(at_s=change["at_s"], changes=paths))
+    return tuple(entries)
 
 
 def paths_between(before: Any, after: Any, path: str) -> Document:

@@ -126,8 +126,8 @@ STOPPED = {"at_s": 0.5, "kind": "state", "message": "Stopped by page 1 at 0.5 s"
         (
             MANY,
             [],
-            "up to 0.329 s, and it lasts 0.999 s: a scenario's sequence has at most 32 changes, and more were made",
-            0.329,
+            "up to 0.309 s, and it lasts 0.999 s: at most 30 changes are simulated again, and more were made",
+            0.309,
         ),
         (
             [],
@@ -138,8 +138,14 @@ STOPPED = {"at_s": 0.5, "kind": "state", "message": "Stopped by page 1 at 0.5 s"
     ],
 )
 def test_what_is_beyond_a_scenario_is_refused_with_what_can_be_simulated(
-    tmp_path: Path, changes: list[Change], events: list[dict[str, Any]], sentence: str, until_s: float
+    tmp_path: Path,
+    changes: list[Change],
+    events: list[dict[str, Any]],
+    sentence: str,
+    until_s: float,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.setattr("backend.recordings.replayed_scenario.MOST_CHANGES", 30)
     run = recorded(tmp_path / "run.mcap", SHORT, 1000, changes, events)
     with pytest.raises(ValueError, match=f'{sentence}; ask for that span with {{"to_s": {until_s}}}'):
         replayed_scenario(run)
@@ -149,6 +155,15 @@ def test_what_is_beyond_a_scenario_is_refused_with_what_can_be_simulated(
     assert told["samples"] == round(until_s / 1e-3) + 1
     with pytest.raises(ValueError, match=r"and 0.9 s were asked for"):
         replayed_scenario(run, 0.9)
+
+
+def test_a_dragged_slider_is_simulated_again_to_the_bit(tmp_path: Path) -> None:
+    drag: list[Change] = [(10 * n, "tuning", {"observer.bandwidth": 60.0 + n}) for n in range(1, 90)]
+    run = recorded(tmp_path / "run.mcap", SHORT, 1000, drag)
+    replayed = replayed_scenario(run)
+    told = residual(run, simulate(replayed.scenario, replayed.tuning_id).rows, 1e-3)
+    assert told["first_difference_s"] is None
+    assert told["samples"] == 1000
 
 
 def test_a_stop_before_its_event_is_told_by_its_command(tmp_path: Path) -> None:
