@@ -145,7 +145,7 @@ def test_stop_is_never_covered_in_analyse(running: Server, open_page: OpenPage, 
     page = open_page(running)
     analyse(page)
     page.set_viewport_size({"width": width, "height": 760})
-    for section in page.locator(".section-button").all():
+    for section in page.locator("#view-analyse .section-button").all():
         section.click()
         expect(page.locator("#stop")).to_be_in_viewport(ratio=1.0)
         assert (
@@ -167,7 +167,7 @@ def test_nothing_in_analyse_hinders_people_who_use_assistive_technology(
     page = open_page(running, colours)
     analyse(page)
     expect(page.locator(".loop-charts canvas")).to_have_count(5)
-    for section in page.locator(".section-button").all():
+    for section in page.locator("#view-analyse .section-button").all():
         section.click()
         results = Axe().run(page, options={"resultTypes": ["violations"]})
         grave = [entry for entry in results.response["violations"] if entry["impact"] in ("serious", "critical")]
