@@ -125,6 +125,7 @@ def test_a_file_that_is_no_database_is_told_and_left(filled: Path, spoil: Any, w
     assert problem.value.status == 503
 
 
+@pytest.mark.postgres
 def test_a_server_that_is_not_there_is_told() -> None:
     database = Database("postgresql://nobody@/nothing?host=/nowhere")
     with pytest.raises(Problem, match="cannot be reached"):
