@@ -1,6 +1,6 @@
 # make run and make test are all that a newcomer needs; both install what they need, and are quick when it is there.
 #   make run PORT=8001     HOST= and PORT= are passed on
-#   make test ARGS="-k observer"
+#   make test ARGS="-k observer"      two processes share the tests; ARGS="-n 0" runs them in one
 #   make PYTHON=python3.12 run
 
 PYTHON ?= python3
@@ -22,7 +22,7 @@ run: environment ## start the dashboard
 	@exec $(BIN)/vssea serve $(strip $(ADDRESS))
 
 test: test-environment chromium compiler ## run the tests
-	@$(BIN)/python -m pytest $(ARGS)
+	@$(BIN)/python -m pytest -n 2 --dist loadfile $(ARGS)
 
 lint: test-environment ## check style, types and layers
 	$(BIN)/ruff check .

@@ -1,7 +1,12 @@
 import pytest
+from hypothesis import settings
 
 from tests.chromium import find_chromium
 from tests.compiler import find_compiler
+
+# How long an example takes says something of the machine, not of the law.
+settings.register_profile("any machine", deadline=None)
+settings.load_profile("any machine")
 
 
 @pytest.fixture(scope="session")
