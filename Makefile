@@ -21,8 +21,9 @@ ADDRESS := $(if $(filter command,$(firstword $(origin HOST))),--host $(HOST)) \
 run: environment ## start the dashboard
 	@exec $(BIN)/vssea serve $(strip $(ADDRESS))
 
+# In the order of the folders: once a process drives a browser, no test with an event loop of its own can run in it.
 test: test-environment chromium compiler ## run the tests
-	@$(BIN)/python -m pytest -n 2 --dist loadfile $(ARGS)
+	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 lint: test-environment ## check style, types and layers
 	$(BIN)/ruff check .
