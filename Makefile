@@ -1,6 +1,6 @@
 # make run and make test are all that a newcomer needs; both install what they need, and are quick when it is there.
 #   make run PORT=8001     HOST= and PORT= are passed on
-#   make test ARGS="-k observer"      two processes share the tests; ARGS="-n 0" runs them in one
+#   make test ARGS="-k observer"
 #   make PYTHON=python3.12 run
 
 PYTHON ?= python3
@@ -9,7 +9,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 
 .DELETE_ON_ERROR:
-.PHONY: help run test lint lock bench clean environment test-environment chromium compiler FORCE
+.PHONY: help run test tests-in-a-browser other-tests lint lock bench clean environment test-environment chromium compiler FORCE
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-6s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -21,9 +21,16 @@ ADDRESS := $(if $(filter command,$(firstword $(origin HOST))),--host $(HOST)) \
 run: environment ## start the dashboard
 	@exec $(BIN)/vssea serve $(strip $(ADDRESS))
 
-# In the order of the folders: once a process drives a browser, no test with an event loop of its own can run in it.
+# Beside each other: the browser leaves the processor idle while it waits, and the other tests do not.
 test: test-environment chromium compiler ## run the tests
-	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder $(ARGS)
+	@$(MAKE) --no-print-directory --jobs 2 --output-sync=target tests-in-a-browser other-tests
+
+# 5: ARGS chose none of these.
+tests-in-a-browser:
+	@$(BIN)/python -m pytest -m browser $(ARGS) || [ $$? = 5 ]
+
+other-tests:
+	@$(BIN)/python -m pytest -m "not browser" $(ARGS) || [ $$? = 5 ]
 
 lint: test-environment ## check style, types and layers
 	$(BIN)/ruff check .

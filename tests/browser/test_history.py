@@ -7,6 +7,8 @@ from tests.browser.conftest import OpenPage
 
 BANDWIDTH = "[data-path='tuning.observer.bandwidth'] input[type=text]"
 
+pytestmark = pytest.mark.browser
+
 
 def bandwidth(server: Server) -> float:
     return float(server.get("/api/session").json()["scenario"]["tuning"]["observer"]["bandwidth"])

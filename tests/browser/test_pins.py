@@ -22,6 +22,8 @@ GHOSTS = """async ([seconds, period, from, to]) => {
     });
 }"""
 
+pytestmark = pytest.mark.browser
+
 
 def ran_for(page: Page, seconds: float) -> None:
     wait_until(page, "seconds => window.vssea.latest('time') > seconds", seconds)
