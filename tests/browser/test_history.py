@@ -1,5 +1,6 @@
 """The history beside the plots: one for all pages, undone by key and by click."""
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.backend.server import Server, until
