@@ -40,13 +40,15 @@ async def watched(bench: SessionBench, turns: int, every: int = 50) -> None:
     for _ in range(turns // every):
         await bench.turns(every)
         bench.session.trigger.watch()
-        await settled()
+        await settled(bench)
 
 
-async def settled() -> None:
-    """Let threads of the store answer."""
-    for _ in range(20):
-        await asyncio.sleep(0.001)
+async def settled(bench: SessionBench) -> None:
+    """Let what the session does beside, such as keeping a capture in a thread, come to its end."""
+    await asyncio.sleep(0)
+    while bench.session._tasks:
+        await asyncio.gather(*bench.session._tasks, return_exceptions=True)
+        await asyncio.sleep(0)
 
 
 def pins(bench: SessionBench) -> list[dict[str, Any]]:
@@ -229,7 +231,7 @@ def test_what_is_armed_while_a_capture_is_being_kept_stays_armed(data_dir: Path)
         await bench.turns(200)
         bench.session.trigger.watch()  # fires, and a thread begins to keep what was captured
         await bench.session.trigger.arm(Arming.model_validate({"source": LEVEL}), "page 2")
-        await settled()
+        await settled(bench)
         assert (trigger(bench)["state"], trigger(bench)["by"], len(pins(bench))) == ("armed", "page 2", 1)
 
     at_bench(data_dir, work)

@@ -13,6 +13,7 @@ export class CalibrationChart {
     this.drawing = svg("svg", { class: "calibration", role: "img", viewBox: `0 0 ${WIDTH} ${HEIGHT}` });
     this.legend = element("p", { class: "calibration-legend" });
     this.root = element("figure", { class: "calibration-figure" }, this.drawing, this.legend);
+    this.root.hidden = true; // until there is something to draw
   }
 
   show({ rows, spring_constant: constant, fit }) {
