@@ -10,6 +10,7 @@ from mcap.writer import Writer
 from backend.recordings.layout import COLUMNS_KEPT, FIELDS, telemetry_schema
 from backend.recordings.messages import Answer, Begin, Wrote
 from backend.recordings.reader import Recording
+from backend.recordings.room import Room
 from backend.recordings.writing import Writing
 from backend.telemetry.ring import Ring, RingReader, RingWriter, Samples
 from benchmarks.kills import ring_samples
@@ -32,7 +33,7 @@ def record(folder: Path, source: Samples, count: int) -> tuple[float, float, flo
     """Record `count` samples; return seconds, memory [MB] after the first minute and at the end, samples lost."""
     ring = Ring()
     writer, answers = RingWriter(ring.name), list[Answer]()
-    writing = Writing(RingReader(ring.name), folder, 2 * count * 1e-3, 0, answers.append)
+    writing = Writing(RingReader(ring.name), folder, 2 * count * 1e-3, Room(folder, 0), answers.append)
     writing.take(Begin(1, 1, {"id": "hour", "begin_ns": str(BEGIN_NS), "origin": "live"}, {"name": "realistic"}, 1))
     time_column, begun, first_mb = INDEX["time"], time.perf_counter(), 0.0
     for done in range(0, count, AT_ONCE):

@@ -3,6 +3,8 @@
 import os
 from concurrent.futures import Future, ThreadPoolExecutor
 
+flush = getattr(os, "fdatasync", os.fsync)  # not every system has the first
+
 
 class Syncing:
     """Flushes files against a power cut, one at a time; asked again meanwhile, it lets that pass unless it must be done."""
@@ -23,6 +25,6 @@ class Syncing:
 
 def _flush(descriptor: int) -> None:
     try:
-        os.fdatasync(descriptor)
+        flush(descriptor)
     finally:
         os.close(descriptor)

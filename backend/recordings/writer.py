@@ -23,8 +23,9 @@ def run_writer(
     """Record until `pipe` closes, then finish what is open."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is the web process's to handle
     from backend.recordings.messages import Begin
+    from backend.recordings.room import Room
     from backend.recordings.syncing import Syncing
-    from backend.recordings.writing import Writing, free_bytes
+    from backend.recordings.writing import Writing
     from backend.telemetry.ring import RingReader
 
     def tell(answer: object) -> None:
@@ -35,7 +36,7 @@ def run_writer(
 
     Path(folder).mkdir(parents=True, exist_ok=True)
     sync = Syncing()
-    writing = Writing(RingReader(ring_name), Path(folder), part_s, keep_free, tell, free_bytes, sync)
+    writing = Writing(RingReader(ring_name), Path(folder), part_s, Room(Path(folder), keep_free), tell, sync)
     run, path, sample, item = resumed
     writing.resume(run if isinstance(run, Begin) else None, Path(path) if path else None, sample, item)
     due = time.monotonic()

@@ -1,9 +1,9 @@
 """From the ring into files: one recording a run, cut into parts when it is long. No clock and no pipe of its own."""
 
 import os
-import shutil
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from backend.recordings.layout import CHANGES, SCENARIO
 from backend.recordings.messages import Answer, Begin, Ended, Hold, Item, Note, Stopped, Wrote
 from backend.recordings.reader import Recording
 from backend.recordings.recording_file import FinishedRecording, RecordingFile
+from backend.recordings.room import Room
 from backend.telemetry.ring import EPOCH, PERIOD_S, RingReader, Samples
 from vssea_core.channels import INDEX
 
@@ -25,18 +26,19 @@ SHORTEST_RUN_S = 0.25
 BEGIN_LIMIT_S = 5.0
 """So long samples wait for the word of what run they belong to; the ring holds a minute."""
 SYNC_EVERY_S = 1.0
-RETRY_S = 10.0
-LEAST_ROOM = 20_000_000
-"""A recording that a disk has stopped is begun again after so long at the earliest, and with so many bytes to begin in."""
 LATE_S = 1.5
 """So long the recording of a run that is over stays open: an event is told once it has rested."""
-Free = Callable[[Path], int]
 Sync = Callable[[int, bool], None]
 
 
-def free_bytes(folder: Path) -> int:
-    """Return the bytes that the disk of a folder has left."""
-    return shutil.disk_usage(folder).free
+@dataclass(frozen=True)
+class RunOver:
+    """The recording of the run before, open until `until_s` for what is told late; `lost` are the samples it lacks."""
+
+    file: RecordingFile
+    epoch: int
+    lost: int
+    until_s: float
 
 
 class Writing:
@@ -47,17 +49,15 @@ class Writing:
         ring: RingReader,
         folder: Path,
         part_s: float,
-        keep_free: int,
+        room: Room,
         tell: Callable[[Answer], None],
-        free: Free = free_bytes,
         sync: Sync = lambda descriptor, must: None,
     ) -> None:
-        self._ring, self._folder, self._part_s, self._keep_free = ring, folder, part_s, keep_free
-        self._tell, self._free, self._sync = tell, free, sync
+        self._ring, self._folder, self._part_s, self._room = ring, folder, part_s, room
+        self._tell, self._sync = tell, sync
         self._file: RecordingFile | None = None
         self._run: Begin | None = None
-        self._over: tuple[RecordingFile, int, float] | None = None  # of the run before: its file, epoch, open until
-        self._now_s = 0.0
+        self._over: RunOver | None = None
         self._scenario: dict[str, Any] = {}
         self._part = 1
         self._begins: dict[int, Begin] = {}
@@ -67,7 +67,6 @@ class Writing:
         self._lost = 0
         self._held: str | None = None
         self._stopped: str | None = None
-        self._retry_at = -np.inf
         self._waiting_since: float | None = None
         self._synced_at = 0.0
 
@@ -100,22 +99,20 @@ class Writing:
 
     def turn(self, now_s: float) -> None:
         """Write all that is new. A disk that refuses stops the recording, and a later turn goes on when it can."""
-        self._now_s = now_s
         try:
-            why = self._held or self._lacking_room() or (self._stopped if now_s < self._retry_at else None)
+            why = self._held or self._room.lacking(now_s, self._stopped is not None)
             if why is None:
                 self._write_samples(now_s)
                 self._write_notes()
                 if self._file is not None:
                     self._stop_is(None)
-                if self._over is not None and now_s >= self._over[2]:
+                if self._over is not None and now_s >= self._over.until_s:
                     self._end_over()
                 self._sync_now_and_then(now_s)
             else:
                 self._leave(why)
         except OSError as error:
-            self._retry_at = now_s + RETRY_S
-            self._leave(f"{self._folder} cannot be written: {error.strerror or error}")
+            self._leave(self._room.refused(error, now_s))
         self._tell(self._state())
 
     def _state(self) -> Wrote:
@@ -137,29 +134,35 @@ class Writing:
     def end(self, reason: str) -> None:
         """Finish what is open."""
         self._end_over()
+        if self._file is not None:
+            self._end_file(reason)
+
+    def _end_file(self, reason: str) -> None:
         file, self._file = self._file, None
         if file is not None:
-            self._finish(file, reason)
-
-    def _finish(self, file: RecordingFile, reason: str) -> None:
-        descriptor = os.dup(file.descriptor)
-        try:
-            file.finish(reason=reason, lost=str(self._lost))
-            self._sync(descriptor, True)
-        finally:
-            os.close(descriptor)
-        self._tell(Ended(file.head["id"], str(file.path)))
+            self._finish(file, reason, self._lost)
 
     def _end_over(self) -> None:
         over, self._over = self._over, None
         if over is not None:
-            self._finish(over[0], "another run began")
+            self._finish(over.file, "another run began", over.lost)
+
+    def _finish(self, file: RecordingFile, reason: str, lost: int) -> None:
+        descriptor = os.dup(file.descriptor)
+        try:
+            file.finish(reason=reason, lost=str(lost))
+            self._sync(descriptor, True)
+        finally:
+            os.close(descriptor)
+            file.close()  # also if the disk refused: the library finishes it once there is room
+        self._tell(Ended(file.head["id"], str(file.path)))
 
     def abandon(self) -> None:
-        """Leave the present recording unfinished, as the end of the process does."""
-        for file in (self._file, self._over and self._over[0]):
-            if file is not None:
-                file.close()
+        """Leave what is open unfinished, as the end of the process does."""
+        if self._file is not None:
+            self._file.close()
+        if self._over is not None:
+            self._over.file.close()
 
     # ---- samples
 
@@ -183,7 +186,7 @@ class Writing:
         times, start = samples[:, INDEX["time"]], 0
         while start < len(samples) and self._run is not None and self._file is not None:
             if times[start] >= self._part * self._part_s:
-                self._finish(self._file, f"goes on in part {self._part + 1}")
+                self._end_file(f"goes on in part {self._part + 1}")
                 self._create(self._run, samples[start:], int(times[start] // self._part_s) + 1)
                 continue
             border = int(np.searchsorted(times, self._part * self._part_s))
@@ -206,7 +209,7 @@ class Writing:
         self._write_notes()
         self._end_over()
         if self._file is not None and self._run is not None:
-            self._over, self._file = (self._file, self._run.epoch, self._now_s + LATE_S), None
+            self._over, self._file = RunOver(self._file, self._run.epoch, self._lost, now_s + LATE_S), None
         self._begins = {number: kept for number, kept in self._begins.items() if number >= epoch}
         if self._run is None or self._run.epoch != epoch:
             self._scenario, self._lost = dict(begin.scenario), 0
@@ -241,39 +244,26 @@ class Writing:
             content = note.document.content
             if note.document.channel == CHANGES and note.epoch == epoch:
                 self._scenario[content["part"]] = content["document"]
-        for file, number in ((self._file, epoch), self._over[:2] if self._over is not None else (None, 0)):
+        files = {self._over.epoch: self._over.file} if self._over is not None else {}
+        if self._file is not None:
+            files[epoch] = self._file
+        for number, file in files.items():
             told = [note.document for note in due if note.epoch == number]
-            if told and file is not None:
+            if told:
                 file.append_documents(told)
 
     # ---- trouble
 
-    def _lacking_room(self) -> str | None:
-        free = self._free(self._folder)
-        needed = max(1.1 * self._keep_free, LEAST_ROOM) if self._stopped else self._keep_free
-        if free >= needed:
-            return None
-        return (
-            f"{self._folder} has {free / 1e9:.2f} GB left and {self._keep_free / 1e9:.2f} GB are kept free; "
-            "delete recordings, or lower VSSEA_RECORDINGS_KEEP_FREE_GB"
-        )
-
     def _leave(self, why: str) -> None:
         """Stop recording without waiting for anything; samples pass by until there is room again."""
-        files = [self._file, self._over and self._over[0]]
-        self._over = None
-        for file in files:
-            if file is None:
-                continue
-            if not file.samples:
-                file.close()
-                file.path.unlink(missing_ok=True)
-                continue
-            try:
-                self._finish(file, why)
-            except OSError:
-                file.close()  # unfinished: the next start finishes it
-        self._file = None
+        with suppress(OSError):
+            self._end_over()
+        if self._file is not None and not self._file.samples:
+            self._file.close()
+            self._file.path.unlink(missing_ok=True)
+            self._file = None
+        with suppress(OSError):
+            self._end_file(why)
         self._write_notes()  # what they change holds when the recording goes on
         self._next = self._ring.written
         self._stop_is(why)

@@ -8,6 +8,8 @@ from backend.recordings.chunks import Document
 from backend.recordings.layout import CHANGES, COLUMNS_KEPT, EVENTS, FIELDS, SCENARIO
 from backend.recordings.messages import Answer, Begin, Ended, Hold, Note, Stopped, Wrote
 from backend.recordings.reader import Recording
+from backend.recordings.recording_file import RecordingFile
+from backend.recordings.room import Room
 from backend.recordings.writing import Writing
 from backend.telemetry.ring import CAPACITY, MARGIN, RingReader
 from tests.backend.recorded import Source, samples
@@ -29,9 +31,8 @@ class Bench:
         self.writing = self.another()
 
     def another(self) -> Writing:
-        return Writing(
-            RingReader(self.source.ring.name), self.folder, self.part_s, 1000, self.answers.append, lambda _: self.free
-        )
+        room = Room(self.folder, 1000, lambda _: self.free)
+        return Writing(RingReader(self.source.ring.name), self.folder, self.part_s, room, self.answers.append)
 
     def begin(self, epoch: int = 1, name: str = "run") -> Begin:
         self.number += 1
@@ -264,6 +265,45 @@ def test_a_disk_that_refuses_stops_the_recording_not_the_writer(bench: Bench, mo
     bench.turn()
     assert bench.said(Stopped)[-1].sentence == ""
     assert bench.read("run1-2").samples == 500
+
+
+def test_a_disk_that_refuses_between_two_parts_ends_the_first_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench = Bench(tmp_path, part_s=1.0)
+    bench.begin()
+    bench.source.put(samples(900))
+    bench.turn()
+
+    def refuse(*_: object) -> RecordingFile:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(RecordingFile, "create", refuse)
+        bench.source.put(samples(600, start=900))
+        bench.turn()
+        bench.turn()
+    assert bench.files() == ["run1"]
+    assert bench.read("run1").is_finished
+    assert bench.read("run1").samples == 1000
+    bench.close()
+
+
+def test_what_a_run_lost_is_told_in_its_own_recording(bench: Bench) -> None:
+    bench.begin(1)
+    bench.source.put(samples(500, epoch=1))
+    bench.turn()
+    bench.source.put(samples(CAPACITY, start=500, epoch=1))
+    for _ in range(5):
+        bench.turn()
+    lost = bench.wrote.lost
+    bench.begin(2)
+    bench.source.put(samples(500, epoch=2))
+    bench.turn()
+    bench.turn(10.0)
+    assert lost > 0
+    assert (bench.read("run1").ending or {})["lost"] == str(lost)
+    assert bench.wrote.lost == 0
 
 
 def test_a_hold_stops_and_its_end_goes_on(bench: Bench) -> None:
