@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from backend.recordings.csv_table import DELIMITERS, TextTable, text_table
 from backend.recordings.csv_units import PER_TIME, factor_of, guessed, split_heading, units_for
 from backend.recordings.layout import COLUMNS_KEPT, FIELD_INDEX
-from backend.recordings.recording_file import BEGINNING, RecordingFile
+from backend.recordings.whole_file import whole_file
 from backend.telemetry.ring import COLUMNS, EPOCH, PERIOD_S
 from vssea_core.channels import INDEX
 
@@ -74,9 +74,7 @@ def csv_import(
     if shift_s > SECONDS_SINCE_1970:
         head = head | {"begun_at": datetime.fromtimestamp(shift_s, UTC).isoformat(timespec="milliseconds")}
     more = {"origin": "import", "begin_ns": "0", "first_sample": "0", "part": "1", "sample_time_s": repr(period_s)}
-    unfinished = target.with_name(f"{target.stem}.new{BEGINNING}")
-    file = RecordingFile.create(unfinished, head | more)
-    try:
+    with whole_file(target, head | more, "imported") as file:
         for first in range(0, len(time), CHUNK):
             part = slice(first, first + CHUNK)
             samples = np.full((len(time[part]), COLUMNS), np.nan)
@@ -85,12 +83,6 @@ def csv_import(
             for channel, column in values.items():
                 samples[:, COLUMNS_KEPT[FIELD_INDEX[channel]]] = column[part]
             file.append_samples(samples, first)
-        file.finish(reason="imported", lost="0")
-        unfinished.replace(target)
-    except BaseException:
-        file.close()
-        unfinished.unlink(missing_ok=True)
-        raise
     return target
 
 

@@ -34,7 +34,7 @@ def plain_unit(unit: str) -> str:
     """Return a unit in one way of writing: `N m`, `N·m` and `N*m` are Nm, `°` is deg, `rad/s²` is rad/s2."""
     text = unit.strip().translate(str.maketrans("²³⁴µμ", "234uu")).replace("^", "").replace("°", "deg")
     text = re.sub(r"[\s·⋅*.]", "", text)
-    text = re.sub(r"\b(degrees?|grad)\b", "deg", text)
+    text = re.sub(r"\bdegrees?\b", "deg", text)
     text = re.sub(r"\b(radians?)\b", "rad", text)
     text = re.sub(r"\b(turns|revs|revolutions?)\b", "rev", text)
     text = re.sub(r"\bsec(onds?)?\b", "s", text)

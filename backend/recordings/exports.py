@@ -1,9 +1,10 @@
-"""A recording taken home: CSV with units, Parquet with everything that belongs to it, an excerpt, or its figures as JSON."""
+"""A recording taken home: CSV with units, Parquet with everything that belongs to it, a span of it, or its figures as JSON."""
 
 import json
 import os
 import tempfile
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +12,11 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
-from backend.recordings.excerpt import write_excerpt
 from backend.recordings.layout import FIELD_INDEX, FIELDS, values_of
 from backend.recordings.metrics_by_blocks import MetricsByBlocks
 from backend.recordings.overview import all_rows
 from backend.recordings.reader import Recording
+from backend.recordings.span_file import write_span
 from backend.recordings.summary import facts
 from backend.recordings.timeline import commands, events, scenario_document, tunings
 from backend.telemetry.ring import WIDTH
@@ -52,18 +53,17 @@ def export(
     names = _named(channels)
     with tempfile.NamedTemporaryFile(dir=folder, suffix=f".{form}", delete=False) as file:
         path = file.name
-    try:
+    with ExitStack() as undo:
+        undo.callback(os.unlink, path)
         if form == "json":
             told = _document(recording, from_s, to_s)
             Path(path).write_text(json.dumps(told, ensure_ascii=False, allow_nan=False), "utf-8")
         elif form == "mcap":
-            write_excerpt(recording, from_s, to_s, Path(path))
+            write_span(recording, from_s, to_s, Path(path))
         else:
             tables = _tables(recording, names, from_s, to_s, tell or (lambda share, words: None))
             (_write_csv if form == "csv" else _write_parquet)(path, _schema(recording, names), tables)
-    except BaseException:
-        os.unlink(path)  # noqa: PTH108 - the name came as text
-        raise
+        undo.pop_all()
     return MEDIA_TYPES[form], path
 
 

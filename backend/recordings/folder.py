@@ -53,10 +53,13 @@ def head_of(path: Path) -> dict[str, str]:
 
 
 def recover(path: Path) -> bool:
-    """Finish a recording that its writer could not; return whether there was anything to do. Raises ValueError if it is none."""
+    """Finish a recording that its writer could not; return whether that was done. Raises ValueError if it is none.
+
+    One that another process writes is left, and so is one on a disk without room for its end.
+    """
     try:
         RecordingFile.reopen(path).finish(reason="its writer was killed", recovered="true")
-    except (FinishedRecording, BlockingIOError):  # or another server is just writing it
+    except (FinishedRecording, OSError):
         return False
     return True
 

@@ -54,6 +54,7 @@ class Library:
         self._tell: Tell = lambda _: None
         self._note: Callable[[str, bool], None] = lambda sentence, is_trouble: None
         self._is_full = False
+        self._unreadable: set[str] = set()
 
     def start(self, tell: Tell, note: Callable[[str, bool], None]) -> None:
         """Finish what a crash left open, summarise what is new, and keep the folder within its quota."""
@@ -165,19 +166,25 @@ class Library:
         await asyncio.to_thread(sweep, self.folder)
         look = await asyncio.to_thread(self._look)
         for each in reversed(look.found.values()):
-            if not each.is_finished and each.id != self._recorder.present():
-                await self._recover(each)
-            if each.id in look.heads:
+            if not await self._recovered(each) and each.id in look.heads:
                 self.added(each.id)
         while True:
             await self._summarise(await self._due.get())
 
-    async def _recover(self, found: Found) -> None:
+    async def _recovered(self, found: Found) -> bool:
+        """Finish a recording that a crash or a full disk left open; return whether that was done."""
+        if found.is_finished or found.id in self._unreadable or found.id == self._recorder.present():
+            return False
         try:
-            if await self._jobs.run("recover", str(found.path)):
-                self._note(f"The recording {found.id} was left open by a crash and is finished now", False)
+            if not await self._jobs.run("recover", str(found.path)):
+                return False
         except (JobFailedError, JobRefusedError) as failure:  # one file that cannot be read must not hide the others
             logger.warning("%s cannot be finished: %s", found.path, failure)
+            self._unreadable.add(found.id)
+            return False
+        self._note(f"The recording {found.id} was left open and is finished now", False)
+        self.added(found.id)
+        return True
 
     async def _summarise(self, recording: str) -> None:
         try:
@@ -195,13 +202,18 @@ class Library:
         while True:
             try:
                 await self.tidy()
-            except Exception:
+            except (OSError, Problem):
                 logger.exception("the recordings could not be tidied")
             await asyncio.sleep(TIDY_EVERY_S)
 
     async def tidy(self) -> None:
-        """Delete the oldest recordings beyond the quota, never a starred or pinned one; without them, stop recording."""
+        """Finish what was left open, then delete the oldest recordings beyond the quota, never a starred or pinned one.
+
+        Without any to delete, recording stops.
+        """
         found = await asyncio.to_thread(recordings_in, self.folder)
+        for each in found.values():
+            await self._recovered(each)
         used = sum(each.size for each in found.values())
         if used > self._quota:
             used = await self._make_room(found, used)

@@ -12,21 +12,25 @@ def listed(
     found: Found, row: Row, summary: dict[str, Any] | None, head: dict[str, str], progress: Wrote | None
 ) -> dict[str, Any]:
     """Return the entry of docs/protocol.md; what is not computed yet is null. `head` serves while there is no summary."""
-    facts = (summary or {}).get("facts", {})
+    said = {
+        "name": head.get("name"), "scenario": head.get("scenario"), "started_at": head.get("begun_at"),
+        "origin": head.get("origin"),
+    }  # fmt: skip
+    facts = said | (summary or {}).get("facts", {})
     state = (
         "recording" if progress is not None else facts.get("state", "complete" if found.is_finished else "recovered")
     )
     return {
         "id": found.id,
-        "name": row.name or facts.get("name") or facts.get("scenario") or head.get("scenario", ""),
-        "scenario": facts.get("scenario") or head.get("scenario", ""),
-        "started_at": facts.get("started_at") or head.get("begun_at") or _begun(found),
+        "name": row.name or facts["name"] or facts["scenario"] or "",
+        "scenario": facts["scenario"] or "",
+        "started_at": facts["started_at"] or _begun(found),
         "duration_s": facts.get("duration_s") if progress is None else _so_far(progress, head),
         "samples": progress.samples if progress is not None else facts.get("samples"),
         "lost": progress.lost if progress is not None else facts.get("lost"),
         "size_bytes": found.size,
         "state": state,
-        "origin": facts.get("origin") or head.get("origin", "live"),
+        "origin": facts["origin"] or "live",
         "starred": row.starred,
         "note": row.note,
         "tags": list(row.tags),

@@ -7,6 +7,7 @@ with one call. `reopen` cuts off what is torn and goes on.
 import fcntl
 import json
 from collections.abc import Sequence
+from contextlib import ExitStack
 from itertools import groupby
 from pathlib import Path
 from typing import IO
@@ -52,15 +53,13 @@ class RecordingFile:
         for record in declarations():
             record.write(builder)
         beginning = path.with_name(f"{path.name}{BEGINNING}")
-        file = beginning.open("w+b", buffering=0)
-        try:
+        with ExitStack() as undo:
+            file = undo.enter_context(beginning.open("w+b", buffering=0))
+            undo.callback(beginning.unlink, missing_ok=True)
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             _write(file, MAGIC + builder.end())
             beginning.rename(path)  # under its own name a file is a recording from its first byte on
-        except BaseException:
-            file.close()
-            beginning.unlink(missing_ok=True)
-            raise
+            undo.pop_all()
         return cls(path, file, scan(path))
 
     @classmethod
@@ -69,8 +68,8 @@ class RecordingFile:
 
         Raises FinishedRecording, BlockingIOError if another process writes it, ValueError if it never became a recording.
         """
-        file = path.open("r+b", buffering=0)
-        try:
+        with ExitStack() as undo:
+            file = undo.enter_context(path.open("r+b", buffering=0))
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             found = scan(path)
             if found.is_finished:
@@ -79,9 +78,7 @@ class RecordingFile:
                 raise ValueError(f"{path.name} ends before its recording begins")
             file.truncate(found.end)
             file.seek(found.end)
-        except BaseException:
-            file.close()
-            raise
+            undo.pop_all()
         recording = cls(path, file, found)
         if found.missing_index:
             recording._append(found.missing_index)

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from backend.recordings.chunks import Document
 from backend.recordings.layout import CHANGES, SCENARIO
 from backend.recordings.reader import Recording
-from backend.recordings.recording_file import BEGINNING, RecordingFile
+from backend.recordings.recording_file import RecordingFile
 from backend.recordings.replayed_scenario import Replayed
 from backend.recordings.timeline import name_of, scenario_document
+from backend.recordings.whole_file import whole_file
 from backend.telemetry.ring import COLUMNS, EPOCH, PERIOD_S, WIDTH
 from vssea_core.channels import CHANNELS, INDEX
 
@@ -31,15 +32,8 @@ def keep_simulation(recording: Recording, replayed: Replayed, rows: Rows, target
         **recording.head, "id": simulated_id(recording), "name": f"{name_of(recording)}, simulated", "origin": "simulation",
         "of": recording.head.get("id", recording.path.stem), "part": "1", "first_sample": "0", "sample_time_s": repr(period_s),
     }  # fmt: skip
-    unfinished = target.with_name(f"{target.stem}.new{BEGINNING}")
-    file = RecordingFile.create(unfinished, head)
-    try:
+    with whole_file(target, head, "simulated") as file:
         _write(file, recording, replayed, rows)
-        unfinished.replace(target)
-    except BaseException:
-        file.close()
-        unfinished.unlink(missing_ok=True)
-        raise
     return residual(recording, rows, period_s)
 
 
@@ -55,7 +49,6 @@ def _write(file: RecordingFile, recording: Recording, replayed: Replayed, rows: 
         samples = np.zeros((len(part), COLUMNS))
         samples[:, :WIDTH], samples[:, EPOCH], samples[:, PERIOD_S] = part, 1.0, period_s
         file.append_samples(samples, first)
-    file.finish(reason="simulated", lost="0")
 
 
 def residual(recording: Recording, rows: Rows, period_s: float) -> dict[str, Any]:

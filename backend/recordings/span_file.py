@@ -12,7 +12,7 @@ from backend.recordings.timeline import scenario_document
 from backend.telemetry.ring import COLUMNS
 
 
-def write_excerpt(recording: Recording, from_s: float, to_s: float, target: Path) -> None:
+def write_span(recording: Recording, from_s: float, to_s: float, target: Path) -> None:
     """Write the samples of a span with the scenario at its begin and what happened in it. Raises ValueError if there are none."""
     file: RecordingFile | None = None
     for messages in recording.blocks(from_s, to_s):
@@ -31,7 +31,7 @@ def write_excerpt(recording: Recording, from_s: float, to_s: float, target: Path
         raise ValueError(
             f"there are no samples from {from_s:g} to {to_s:g} s; this recording goes from {low:g} to {high:g} s"
         )
-    file.finish(reason="excerpt", lost=(recording.ending or {}).get("lost", "0"))
+    file.finish(reason="a span of a longer one", lost=(recording.ending or {}).get("lost", "0"))
 
 
 def _documents(recording: Recording, begin_s: float, to_s: float) -> list[Document]:
