@@ -8,10 +8,12 @@ from typing import Any, TypeVar
 import pytest
 import sqlalchemy as sa
 
+from backend.compute.pool import JobRefusedError
 from backend.problem import Problem
 from backend.recordings.catalogue import Catalogue
 from backend.recordings.folder import recover
 from backend.recordings.library import Library
+from backend.recordings.reader import Recording
 from backend.recordings.recorder import Recorder
 from backend.recordings.recording_file import RecordingFile
 from backend.settings import Settings
@@ -32,7 +34,10 @@ class Jobs:
         path = Path(arguments[0])
         self.asked.append((job, path.stem))
         if job == "recover":
-            return recover(path)
+            try:
+                return recover(path)
+            except ValueError as refusal:
+                raise JobRefusedError(str(refusal)) from refusal
         facts = {"scenario": "nominal", "started_at": path.stem, "samples": 500, "state": "complete", "origin": "live"}
         return {"facts": facts, "metrics": {"peak_error": 1.0}, "picture": None}
 
@@ -99,8 +104,27 @@ def test_what_a_crash_left_open_is_finished_summarised_and_told(shelf: Shelf) ->
     assert [entry["id"] for entry in listed] == ["b", "a"]
     assert ("recover", "a") in shelf.jobs.asked
     assert ("recover", "b") not in shelf.jobs.asked
-    assert shelf.notes == ["The recording a was left open by a crash and is finished now"]
+    assert shelf.notes == ["The recording a was left open and is finished now"]
     assert {"type": "recordings"} in shelf.messages
+
+
+def test_what_a_full_disk_left_open_is_finished_once_there_is_room(shelf: Shelf) -> None:
+    shelf.put("a", finished=False)
+    (shelf.library.folder / "other.mcap").write_bytes(b"something else")
+    asyncio.run(shelf.library.tidy())
+    asyncio.run(shelf.library.tidy())
+    assert shelf.notes == []  # no page was there to be told
+    assert Recording(shelf.library.folder / "a.mcap").is_finished
+    assert [name for job, name in shelf.jobs.asked if job == "recover"] == ["a", "other"]
+
+
+def test_an_import_has_its_name_before_its_summary(shelf: Shelf) -> None:
+    head = {"id": "a", "name": "bench", "origin": "import", "begin_ns": "0", "first_sample": "0", "part": "1"}
+    file = RecordingFile.create(shelf.library.folder / "a.mcap", head)
+    file.append_samples(samples(500), 0)
+    file.finish()
+    entry = asyncio.run(shelf.library.entry("a"))
+    assert (entry["name"], entry["origin"], entry["summary"]) == ("bench", "import", None)
 
 
 def test_a_summary_is_computed_once(shelf: Shelf) -> None:
