@@ -6,9 +6,10 @@ import pwd
 import shutil
 import subprocess
 import tempfile
-import time
 from collections.abc import Callable
 from pathlib import Path
+
+from tests.backend.server import until
 
 START_LIMIT_S = 60.0
 USER = "postgres"
@@ -65,15 +66,13 @@ class PostgresServer:
         shutil.rmtree(self.folder)
 
     def _wait(self) -> None:
-        deadline = time.monotonic() + START_LIMIT_S
-        while self._is_deaf():
-            if time.monotonic() > deadline or self.process.poll() is not None:
-                raise TimeoutError("the PostgreSQL server did not start")
-            time.sleep(0.1)
+        until(self._listens, START_LIMIT_S)
 
-    def _is_deaf(self) -> bool:
+    def _listens(self) -> bool:
+        if self.process.poll() is not None:
+            raise RuntimeError("the PostgreSQL server ended")
         asked = subprocess.run([self._programs / "pg_isready", "-q", "-h", self.folder], check=False)
-        return asked.returncode != 0
+        return asked.returncode == 0
 
     def _run(self, program: str, *arguments: str) -> None:
         subprocess.run(

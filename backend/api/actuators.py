@@ -6,7 +6,8 @@ from typing import Any, Self
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from backend.api.resources import BY, body_named, body_of
+from backend.api.caller import By
+from backend.api.resources import body_named, body_of
 from backend.api.versioned import Saved, checked, versioned_routes
 from backend.compute.pool import JobFailedError, JobRefusedError, Pool
 from backend.presets.contents import ActuatorContent, CalibrationPoint, ValueProvenance, live_actuator
@@ -45,7 +46,7 @@ def actuator_routes(session: Session, pool: Pool) -> APIRouter:
     """Return the routes; fits are computed by the analysis worker."""
     actuators = session.presets.actuators
 
-    def content_of(asked: SavedActuator) -> ActuatorContent:
+    def content_of(asked: SavedActuator, _: str) -> ActuatorContent:
         if asked.actuator is None:
             return live_actuator(session.scenario)
         return ActuatorContent(
@@ -73,9 +74,9 @@ def actuator_routes(session: Session, pool: Pool) -> APIRouter:
         return answer | {"version": found.version.number}
 
     @router.post("/actuators/{name}/apply", openapi_extra=body_named("version"))
-    async def apply(name: str, request: Request) -> dict[str, Any]:
+    async def apply(name: str, request: Request, by: By) -> dict[str, Any]:
         """Load the live scenario anew, at t = 0, with a saved actuator as its plant."""
         asked = checked(WhichVersion, await body_of(request))
-        return await session.presets.load_plant(name, asked.version, BY)
+        return await session.presets.load_plant(name, asked.version, by)
 
     return router

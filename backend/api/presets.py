@@ -4,7 +4,8 @@ from typing import Any
 
 from fastapi import APIRouter, Request
 
-from backend.api.resources import BY, body_named, body_of
+from backend.api.caller import By
+from backend.api.resources import body_named, body_of
 from backend.api.versioned import Saved, checked, versioned_routes
 from backend.presets.contents import PresetContent, PresetProvenance, live_preset
 from backend.session.arguments import Applying
@@ -24,20 +25,20 @@ class SavedPreset(Saved):
 def preset_routes(session: Session) -> APIRouter:
     """Return the routes."""
 
-    def content_of(asked: SavedPreset) -> PresetContent:
+    def content_of(asked: SavedPreset, by: str) -> PresetContent:
         tuning = asked.tuning or (asked.scenario.tuning if asked.scenario else None)
         if tuning is None:
-            return live_preset(session.scenario, session.status.time_s, asked.author or BY)
-        provenance = PresetProvenance(source="rest", vssea=__version__, by=asked.author or BY)
+            return live_preset(session.scenario, session.status.time_s, asked.author or by)
+        provenance = PresetProvenance(source="rest", vssea=__version__, by=asked.author or by)
         return PresetContent(tuning=tuning, scenario=asked.scenario, provenance=provenance)
 
     router = versioned_routes(session, session.presets.presets, SavedPreset, content_of)
 
     @router.post("/presets/{name}/apply", openapi_extra=body_named("version, paths"))
-    async def apply(name: str, request: Request) -> dict[str, Any]:
+    async def apply(name: str, request: Request, by: By) -> dict[str, Any]:
         """Use a saved tuning in the live session: only what differs is sent."""
         body = await body_of(request)
         asked = checked(Applying, {"name": name} | body if isinstance(body, dict) else body)
-        return await session.command("apply_preset", asked.model_dump() | {"name": name}, BY)
+        return await session.command("apply_preset", asked.model_dump() | {"name": name}, by)
 
     return router

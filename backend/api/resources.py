@@ -9,6 +9,7 @@ from fastapi.responses import FileResponse
 from pydantic import ValidationError
 from starlette.background import BackgroundTask
 
+from backend.api.caller import By
 from backend.compute.pool import JobFailedError, JobRefusedError, Pool
 from backend.problem import Problem, from_validation, refused
 from backend.session.session import Session
@@ -20,7 +21,6 @@ from vssea_core.scenarios import SCENARIOS
 SIMULATION_LIMIT_S = 60.0
 LARGEST_BODY = 1_000_000
 Document = dict[str, Any]
-BY = "REST"
 
 
 async def body_of(request: Request, largest: int = LARGEST_BODY) -> Any:
@@ -111,9 +111,9 @@ def resources(session: Session, pool: Pool, folder: str) -> APIRouter:
         return session.history.last(last)
 
     @router.post("/session/{command}", openapi_extra=body_named("arguments of the command"))
-    async def command(command: str, request: Request) -> Document:
+    async def command(command: str, request: Request, by: By) -> Document:
         """Run a command of the live session; docs/protocol.md lists them."""
-        return await session.command(command, await body_of(request), BY)
+        return await session.command(command, await body_of(request), by)
 
     return router
 

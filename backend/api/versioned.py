@@ -8,8 +8,9 @@ from typing import Annotated, Any, TypeVar
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
+from backend.api.caller import By
 from backend.api.conditions import expected_of, tagged
-from backend.api.resources import BY, body_named, body_of
+from backend.api.resources import body_named, body_of
 from backend.presets.comparison import compared
 from backend.presets.contents import Note, PresetName, Tags
 from backend.presets.documents import Content, Documents
@@ -63,9 +64,9 @@ def checked(model: type[Asked], body: Any) -> Asked:
 
 
 def versioned_routes(
-    session: Session, documents: Documents, saved: type[Asked], content_of: Callable[[Asked], Content]
+    session: Session, documents: Documents, saved: type[Asked], content_of: Callable[[Asked, str], Content]
 ) -> APIRouter:
-    """Return the routes; `content_of` makes the content of what a PUT asked for."""
+    """Return the routes; `content_of` makes the content of what a PUT asked for, and by whom."""
     kind, router = documents.kind, APIRouter(prefix="/api")
     base = f"/{kind.plural}"
 
@@ -86,6 +87,7 @@ def versioned_routes(
     @router.post(base + "/import", openapi_extra=body_named("an exported file"))
     async def import_file(
         request: Request,
+        by: By,
         dry_run: Annotated[bool, Query()] = False,
         name: Annotated[str | None, Query(max_length=80)] = None,
     ) -> Answer:
@@ -93,8 +95,8 @@ def versioned_routes(
         file = await body_of(request, LARGEST_FILE)
         found = await asyncio.to_thread(read, documents, file, name)
         if not dry_run:
-            kept = await asyncio.to_thread(keep, documents, found, BY)
-            session.presets.imported(documents, kept, BY)
+            kept = await asyncio.to_thread(keep, documents, found, by)
+            session.presets.imported(documents, kept, by)
         return {kind.plural: [each.document() for each in found], "kept": not dry_run}
 
     @router.get(base + "/{name}")
@@ -103,36 +105,36 @@ def versioned_routes(
         return _answered(documents.get(name, version), response)
 
     @router.put(base + "/{name}", openapi_extra=body_named("nothing, or what to save"))
-    async def put(name: str, request: Request, response: Response) -> Answer:
+    async def put(name: str, request: Request, response: Response, by: By) -> Answer:
         """Save what runs, or the body's content, as a new version."""
         known = checked(Named, {"name": name}).name
         expected = expected_of(request)
         asked: Any = checked(saved, await body_of(request))
-        author = asked.author or BY
+        author = asked.author or by
         found = await session.presets.put(
-            documents, known, content_of(asked), expected, BY, author, asked.note, asked.tags
+            documents, known, content_of(asked, by), expected, by, author, asked.note, asked.tags
         )
         response.status_code = 201 if found.document.count == 1 else 200
         return await asyncio.to_thread(_answered, found, response)
 
     @router.patch(base + "/{name}", openapi_extra=body_named("tags, name, note, labels, archived"))
-    async def patch(name: str, request: Request, response: Response) -> Answer:
+    async def patch(name: str, request: Request, response: Response, by: By) -> Answer:
         """Change what is said about a document."""
         expected, asked = expected_of(request), checked(Edited, await body_of(request))
-        found = await session.presets.edit(documents, name, Edit(**dict(asked)), expected, BY)
+        found = await session.presets.edit(documents, name, Edit(**dict(asked)), expected, by)
         return await asyncio.to_thread(_answered, found, response)
 
     @router.post(base + "/{name}/versions/{number}/restore")
-    async def restore(name: str, number: int, request: Request, response: Response) -> Answer:
+    async def restore(name: str, number: int, request: Request, response: Response, by: By) -> Answer:
         """Make an old version's content the newest version."""
-        found = await session.presets.restore(documents, name, number, expected_of(request), BY)
+        found = await session.presets.restore(documents, name, number, expected_of(request), by)
         return await asyncio.to_thread(_answered, found, response)
 
     @router.delete(base + "/{name}")
-    async def archive(name: str, request: Request, response: Response) -> Answer:
+    async def archive(name: str, request: Request, response: Response, by: By) -> Answer:
         """Archive: out of the list, and nothing of it lost."""
         expected: Expected | None = expected_of(request)
-        found = await session.presets.archive(documents, name, expected, BY)
+        found = await session.presets.archive(documents, name, expected, by)
         return await asyncio.to_thread(_answered, found, response)
 
     @router.get(base + "/{name}/difference")

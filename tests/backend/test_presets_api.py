@@ -292,3 +292,18 @@ def rewrite(server: Server, name: str, number: int, content: dict[str, Any]) -> 
             "UPDATE versions SET content = ? WHERE number = ? AND document_id = (SELECT id FROM documents WHERE name = ?)",
             (json.dumps(content), number, name),
         )
+
+
+@pytest.mark.parametrize(
+    ("named", "told"), [("page 3", "page 3"), (None, "REST"), ("page 3 <b>", "REST"), ("root", "REST")]
+)
+def test_the_log_says_which_page_made_a_call(session: httpx.Client, named: str | None, told: str) -> None:
+    headers = {} if named is None else {"X-VSSEA-Page": named}
+    session.put("/api/presets/whose", json={}, headers=headers | {"If-Match": "*"}).raise_for_status()
+    session.patch("/api/presets/whose", json={"tags": [told]}, headers=headers | {"If-Match": "*"}).raise_for_status()
+    session.post(
+        "/api/session/tune", json={"changes": {"observer.bandwidth": 77.0}}, headers=headers
+    ).raise_for_status()
+    assert {event["by"] for event in session.get("/api/session/events?last=2").json()} == {told}
+    assert session.get("/api/presets/whose").json()["author"] == told
+    assert session.get("/api/session/history?last=1").json()[0]["by"] == told

@@ -78,7 +78,7 @@ export class Library extends EventTarget {
 
   /** Save the content, or what runs without one, as a new version; `etag` of what it replaces. @throws {Refusal} */
   save(name, body, etag) {
-    return this.#change("PUT", this.#path(name), etag, { author: this.session.you, ...body });
+    return this.#change("PUT", this.#path(name), etag, body);
   }
 
   /** Change what is said about the one that is looked at. @throws {Refusal} */

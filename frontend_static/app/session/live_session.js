@@ -1,4 +1,5 @@
 import { LiveConnection } from "./live_connection.js";
+import { callAs } from "./rest.js";
 import { TelemetryFrame } from "./telemetry_frame.js";
 import { TelemetryStore } from "./telemetry_store.js";
 import { ScenarioDocument } from "../document/scenario_document.js";
@@ -84,6 +85,7 @@ export class LiveSession extends EventTarget {
     if (otherRun) this.store.clear({ restarted: true });
     this.#run = hello.run;
     this.you = hello.you;
+    callAs(hello.you);
     this.channels = new Map(hello.channels.map((channel) => [channel.name, channel]));
     this.store.readChannels(hello.channels);
     this.events = otherRun ? [] : this.events;

@@ -1,14 +1,21 @@
 import { Refusal } from "./refusal.js";
 
 const TIME_LIMIT_MS = 8000;
+let page = "";
+
+/** Let calls from now on be those of a page, by the name that the live session gave it: the log says who did what. */
+export function callAs(name) {
+  page = name;
+}
 
 /** One REST call, answered within `timeLimitMs`. @param {Object<string, string>} [headers] such as If-Match @returns {Promise<any>} the answer's JSON @throws {Refusal} with the server's problem, or why there is none */
 export async function rest(method, path, body, timeLimitMs = TIME_LIMIT_MS, headers = {}) {
   let response;
+  const own = { ...(page && { "x-vssea-page": page }), ...(body !== undefined && { "content-type": "application/json" }) };
   try {
     response = await fetch(path, {
       method,
-      headers: body === undefined ? headers : { "content-type": "application/json", ...headers },
+      headers: { ...own, ...headers },
       body: body === undefined ? undefined : JSON.stringify(body),
       signal: AbortSignal.timeout(timeLimitMs),
     });
