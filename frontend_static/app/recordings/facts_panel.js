@@ -29,6 +29,7 @@ export class FactsPanel {
     this.lines = element("dl", { class: "facts" });
     this.metrics = element("dl", { class: "facts" });
     this.tunings = element("ol", { class: "tunings" });
+    this.changes = element("section", { class: "side-panel", "aria-label": "Tunings" }, element("h2", {}, "Tunings"), this.tunings);
     this.root = element(
       "div",
       { class: "facts-column", tabindex: "0", role: "group", "aria-label": "Facts of the recording" },
@@ -43,7 +44,7 @@ export class FactsPanel {
         this.problem,
       ),
       element("section", { class: "side-panel", "aria-label": "Metrics of the recording" }, element("h2", {}, "Metrics"), this.metrics),
-      element("section", { class: "side-panel", "aria-label": "Tunings" }, element("h2", {}, "Tunings"), this.tunings),
+      this.changes,
     );
   }
 
@@ -61,6 +62,7 @@ export class FactsPanel {
       ...(metrics.length ? metrics.flatMap(({ label, words }) => pair(label, words)) : [element("dd", { class: "hint" }, "They are computed when the recording ends.")]),
     );
     this.tunings.replaceChildren(...facts.tunings.map(tuningLine));
+    this.changes.hidden = facts.tunings.length === 0;
   }
 
   #typed() {

@@ -31,7 +31,7 @@ export class LoopHealth {
       `${lostSamples} samples did not reach this page`,
       `real-time factor ${fixed(pace.achieved, 3)} of ${pace.asked} asked`,
     ].join("\n");
-    setText(this.pages, pages > 1 ? `${this.session.you} of ${pages}` : this.session.you);
+    setText(this.pages, pages > 1 ? `${this.session.you}, ${pages} open` : this.session.you);
     this.pages.title =
       pages > 1
         ? `You are ${this.session.you}; ${pages} pages are open on this session, all may tune and stop`
