@@ -1,0 +1,140 @@
+"""A rig's file: which actuator of the library it is, and only what the library does not know: wiring, counts, signs, limits.
+
+TOML, read whole and checked before anything is opened; docs/rig-file.md lists every field, `vssea rig example` writes one.
+"""
+
+import tomllib
+from pathlib import Path
+from typing import Literal, Self
+
+from pydantic import Field, JsonValue, model_validator
+
+from vssea_core.fields import Part
+
+Sign = Literal[1, -1]
+
+
+class Bus(Part):
+    """How the CAN bus is opened: the arguments of python-can's Bus, such as interface, channel, bitrate, host, port."""
+
+    interface: str = Field(description="socketcan, socketcand, slcan, pcan, kvaser ... as python-can names them.")
+    channel: str = Field("can0", description="Name of the channel at that interface.")
+    bitrate: int | None = Field(1_000_000, description="Bits a second, where the interface sets them; null = as it is.")
+    options: dict[str, JsonValue] = Field(default_factory=dict, description="Further arguments, such as host and port.")
+
+
+class Drive(Part):
+    """A CiA 402 drive in cyclic synchronous torque mode, and its encoder."""
+
+    node: int = Field(ge=1, le=127, description="CANopen node number.")
+    device_type: int = Field(0x00020192, description="What object 0x1000 must say; servo drive, CiA 402.")
+    vendor: int | None = Field(None, description="What object 0x1018:1 must say; null = any.")
+    serial: int | None = Field(None, description="What object 0x1018:4 must say; null = any.")
+    counts_per_turn: int = Field(ge=4, description="Position counts (0x6064) in a turn of this motor, four a line.")
+    sign: Sign = Field(1, description="1 if positive counts and torque are positive in the model.")
+    rated_torque_unit: float = Field(
+        1e-6, gt=0.0, description="N·m in a unit of object 0x6076 (µN·m on EPOS4, mN·m by CiA 402)."
+    )
+    efficiency: float = Field(
+        1.0, gt=0.05, le=1.0, description="Torque at the gear side = efficiency x ratio x motor torque."
+    )
+    torque_limit: float = Field(gt=0.0, description="Most that is ever asked [N·m], gear side for the motor.")
+    torque_constant: float | None = Field(
+        None, gt=0.0, description="N·m/A of this motor, only to show currents; null = torques only."
+    )
+    quick_stop_deceleration: int | None = Field(
+        None, ge=1, description="Object 0x6085 in the drive's unit; null = as it is."
+    )
+
+
+class LinkEncoder(Part):
+    """The encoder at the output: a CiA 406 node of its own, or the second encoder of a drive."""
+
+    source: Literal["node", "motor_drive", "stiffness_drive"] = "node"
+    node: int | None = Field(None, ge=1, le=127, description="CANopen node number, where source is node.")
+    index: int = Field(0x6004, description="Object with the position: 0x6004 of CiA 406, the vendor's own on a drive.")
+    subindex: int = 0
+    bits: int = Field(32, description="Length of that object in the PDO.")
+    counts_per_turn: int = Field(ge=4, description="Counts in a turn of the link.")
+    sign: Sign = 1
+    zero: int = Field(0, description="Counts where the link's position is 0 rad.")
+
+    @model_validator(mode="after")
+    def _node_given(self) -> Self:
+        if (self.source == "node") != (self.node is not None):
+            raise ValueError("link.node is needed where link.source is 'node', and only there")
+        return self
+
+
+class Limits(Part):
+    """What the rig stands. Applied last, whatever the tuning asks; a tuning can only be narrower."""
+
+    motor_torque: float = Field(gt=0.0, description="N·m, gear side.")
+    motor_torque_rate: float = Field(gt=0.0, description="N·m/s.")
+    motor_speed: float = Field(gt=0.0, description="rad/s, gear side; 1.25 times it is a fault.")
+    stiffness_torque: float = Field(gt=0.0, description="N·m of the stiffness motor.")
+    stiffness_speed: float = Field(gt=0.0, description="rad/s of the stiffness motor.")
+    link_low: float = Field(description="rad.")
+    link_high: float = Field(description="rad.")
+    braking: float = Field(10.0, gt=0.0, description="rad/s²: deceleration the position limits count on.")
+    deflection: float = Field(gt=0.0, description="rad; 1.25 times it is a fault.")
+    stiffness_low: float = Field(gt=0.0, description="N·m/rad, inside the end stop.")
+    stiffness_high: float = Field(gt=0.0, description="N·m/rad, inside the end stop.")
+    following_error: float = Field(0.2, gt=0.0, description="rad between reference and link for 0.2 s is a fault.")
+    jog_speed: float = Field(0.5, gt=0.0, description="rad/s, the fastest jog of the link.")
+    stiffness_jog: float = Field(200.0, gt=0.0, description="N·m/rad a second, the fastest jog of the stiffness.")
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if self.link_low >= self.link_high:
+            raise ValueError(f"limits.link_low {self.link_low:g} rad is not below link_high {self.link_high:g} rad")
+        if self.stiffness_low >= self.stiffness_high:
+            raise ValueError(
+                f"limits.stiffness_low {self.stiffness_low:g} N·m/rad is not below stiffness_high {self.stiffness_high:g}"
+            )
+        return self
+
+
+class Homing(Part):
+    """How the stiffness axis finds itself: slowly to the stiff stop, then to the soft one; their distance is checked."""
+
+    torque: float = Field(0.10, gt=0.0, description="N·m of the stiffness motor while it looks for a stop.")
+    speed: float = Field(15.0, gt=0.0, description="rad/s while it looks for a stop.")
+    span_tolerance: float = Field(
+        0.02, gt=0.0, le=0.5, description="Share by which the distance of the stops may differ."
+    )
+    still_s: float = Field(0.15, gt=0.0, description="s without motion that make a stop.")
+    time_limit_s: float = Field(30.0, gt=0.0, description="s after which homing fails.")
+
+
+class RigFile(Part):
+    """One rig."""
+
+    name: str = Field(min_length=1, max_length=60, pattern=r"^[\w .+-]+$")
+    note: str = Field("", max_length=500)
+    actuator: str | None = Field(None, description="Name in the actuator library; null = the default actuator.")
+    preset: str | None = Field(None, description="Preset to begin with; null = the tuning in force, if it fits.")
+    rate_hz: Literal[100, 200, 250, 500, 1000] = Field(
+        500, description="Cycles a second; 500 on CAN, 250 on a USB serial adapter."
+    )
+    answer_share: float = Field(
+        0.6, gt=0.1, lt=0.95, description="Share of a cycle in which the answers must be there."
+    )
+    bus: Bus
+    motor: Drive
+    stiffness: Drive
+    link: LinkEncoder
+    limits: Limits
+    homing: Homing = Homing()
+
+    @model_validator(mode="after")
+    def _nodes_differ(self) -> Self:
+        nodes = [self.motor.node, self.stiffness.node, *([self.link.node] if self.link.node else [])]
+        if len(set(nodes)) < len(nodes):
+            raise ValueError(f"nodes {', '.join(map(str, nodes))} are not all different; give each its own number")
+        return self
+
+
+def read_rig_file(path: Path) -> RigFile:
+    """Return the rig of a file. Raises OSError, tomllib.TOMLDecodeError or pydantic.ValidationError."""
+    return RigFile.model_validate(tomllib.loads(path.read_text("utf-8")))
