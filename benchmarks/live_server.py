@@ -167,5 +167,6 @@ def _processor_seconds(pid: int) -> float:
 
 
 def children(pid: int) -> list[int]:
+    """Return the process ids of the children of a process."""
     tasks = Path(f"/proc/{pid}/task").iterdir()  # a child belongs to the thread that started it
     return [int(child) for task in tasks for child in (task / "children").read_text().split()]

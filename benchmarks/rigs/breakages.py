@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from backend.emulator.start import Emulator
+
 from benchmarks.live_server import Server
 from benchmarks.rigs.line import Line
 from benchmarks.rigs.operator import Operator

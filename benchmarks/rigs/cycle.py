@@ -25,7 +25,9 @@ def measure(rate_hz: int) -> None:
             after, spent = operator.snapshot["rig"]["bus"], server.processor_seconds()
         cycles = after["cycles"] - before["cycles"]
         late, missed = (after[name] - before[name] for name in ("late_answers", "missed_cycles"))
-        print(f"{rate_hz} Hz, {cycles} cycles: answers late {late} ({100 * late / cycles:.2f} %), cycles missed {missed}")
+        print(
+            f"{rate_hz} Hz, {cycles} cycles: answers late {late} ({100 * late / cycles:.2f} %), cycles missed {missed}"
+        )
         for name in ("lateness_us", "execution_us"):
             print(f"  {name:13}" + "   ".join(f"{label} {value:.0f}" for label, value in report[name].items()))
         load = 100.0 * (spent["vssea control"] - processor["vssea control"]) / DURATION_S

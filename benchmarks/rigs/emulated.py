@@ -8,6 +8,7 @@ from importlib.resources import files
 from typing import Any
 
 from backend.emulator.start import Emulator, start_emulator
+
 from benchmarks.live_server import Server, running_server
 from benchmarks.rigs.operator import Operator
 

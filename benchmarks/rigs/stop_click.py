@@ -37,4 +37,6 @@ def main() -> None:
                 operator.wait_for("stopped")
                 delays.append(emulator.control({"do": "peaks"})["safe_after_s"])
             found = 1e3 * np.array(delays)
-            print(f"STOP click to zero torque, {name:9} p50 {np.median(found):6.1f} ms   worst {found.max():6.1f} ms   of {COUNT}")
+            print(
+                f"STOP click to zero torque, {name:9} p50 {np.median(found):6.1f} ms   worst {found.max():6.1f} ms   of {COUNT}"
+            )
