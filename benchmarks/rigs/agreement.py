@@ -49,14 +49,14 @@ def compare(rate_hz: int) -> None:
     """Print the differences at one rate."""
     with emulated_rig(rate_hz) as (server, _), Operator(server.port) as operator:
         armed(operator)
-        scenario = Scenario.model_validate(server.get("/api/session/document")["scenario"])
+        scenario = Scenario.model_validate(server.get("/api/session")["scenario"])
         operator.ask("set_reference", replace=SINE)
         begun_s = operator.ask("follow")["time_s"]
         time.sleep(TRACKED_S)
         span = recorded(server, begun_s + COMPARED_S[0], begun_s + COMPARED_S[1])
     reference = SineReference.model_validate(SINE)
     alone = simulate(scenario.model_copy(update={"reference": reference, "duration_s": COMPARED_S[1]}), 1)
-    rows = alone.samples[np.rint((span["time"] - begun_s) / scenario.timing.sample_time_s).astype(int)]
+    rows = alone.rows[np.rint((span["time"] - begun_s) / scenario.timing.sample_time_s).astype(int)]
     for name, unit, scale in (("link_position", "mrad", 1e3), ("motor_torque", "N m", 1.0)):
         difference = scale * (span[name] - rows[:, INDEX[name]])
         size = scale * np.sqrt(np.mean(rows[:, INDEX[name]] ** 2))
