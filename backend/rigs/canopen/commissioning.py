@@ -86,12 +86,13 @@ def _drive(
     configurator.settings(drive_settings(axis, drive, period_s, scale.limit))
     mode_taken(node, place.words)
     try:
-        if state_of(node.read(objects.STATUS_WORD, 0, "<H")) in (DriveState.FAULT, DriveState.FAULT_REACTION):
+        found = node.read(objects.STATUS_WORD, 0, "<H")
+        if state_of(found) in (DriveState.FAULT, DriveState.FAULT_REACTION):
             node.error_code = node.read(objects.ERROR_CODE, 0, "<H")
     except NodeError as error:
         raise RigError(CONFIGURATION, f"{place.words}: {error}") from error
     answers = Answer(state.can_id, state.form, is_status), Answer(torque.can_id, torque.form, is_torque)
-    return DriveChannel(axis, node, command, answers, scale, MotorPosition(drive, gear_ratio))
+    return DriveChannel(axis, node, found, command, answers, scale, MotorPosition(drive, gear_ratio))
 
 
 def _encoder(rig_file: RigFile, node: Node, configurator: Configurator) -> LinkChannel:

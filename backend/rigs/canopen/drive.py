@@ -17,12 +17,13 @@ from backend.rigs.canopen.emergency import error_words
 from backend.rigs.canopen.nodes import Node
 from backend.rigs.canopen.objects import Pdo
 from backend.rigs.canopen.scaling import MotorPosition, TorqueScale
-from backend.rigs.rig import Axis, AxisState, AxisStatus
+from backend.rigs.rig import Axis, AxisStatus
 
 SILENT_CYCLES = 10
 """From this age on nobody knows where a drive is."""
 MOST_TORQUE = 10_000  # thousandths of the rated torque; more is no torque but another object
 _COMMAND = struct.Struct("<Hh")
+_HOLDING = (DriveState.QUICK_STOP, DriveState.OPERATION_ENABLED)
 
 
 def is_status(content: tuple[int, ...]) -> bool:
@@ -36,17 +37,20 @@ def is_torque(content: tuple[int, ...]) -> bool:
 
 
 class DriveChannel:
-    """A configured drive; torque [N m] and position [rad] at the gear side."""
+    """A configured drive, `found` with that status word; torque [N m] and position [rad] at the gear side.
+
+    A drive that was found holding by its quick stop goes on with it until it is told otherwise.
+    """
 
     def __init__(
-        self, axis: Axis, node: Node, command: Pdo, answers: tuple[Answer, Answer], scale: TorqueScale,
+        self, axis: Axis, node: Node, found: int, command: Pdo, answers: tuple[Answer, Answer], scale: TorqueScale,
         position: MotorPosition,
     ) -> None:  # fmt: skip
         self.axis = axis
         self.node = node
         self.answer, self.torque_answer = answers
         self.message = can.Message(arbitration_id=command.can_id, is_extended_id=False, data=bytearray(command.size))
-        self.goal = Goal.DISABLED
+        self.goal = Goal.STOPPED if drive_state(found) in _HOLDING else Goal.DISABLED
         self.torque = 0.0
         """What the drive really took over last."""
         self._units = 0
@@ -54,8 +58,7 @@ class DriveChannel:
         self.torque_seen = 0.0
         self._scale, self._counter = scale, position
         self._control_word = DISABLE_VOLTAGE
-        self._state: AxisState = "unknown"
-        self._is_new = True
+        self._status_word = found
 
     @property
     def age(self) -> int:
@@ -65,15 +68,11 @@ class DriveChannel:
 
     def command(self, torque: float) -> None:
         """Write control word and torque into the message; no torque but in operation."""
-        content = self.answer.content
-        word, units = DISABLE_VOLTAGE, 0
-        if content is not None:
-            if self._is_new:
-                self._is_new = False
-                self._keep_holding(content[0])
-            word, drive, self._state, self.goal = step(content[0], self.goal, self._control_word)
-            if word == ENABLE and drive is DriveState.OPERATION_ENABLED:
-                units = self._scale.units(torque)
+        if self.answer.content is not None:
+            self._status_word = self.answer.content[0]
+        word, drive, _, self.goal = step(self._status_word, self.goal, self._control_word)
+        is_enabled = word == ENABLE and drive is DriveState.OPERATION_ENABLED
+        units = self._scale.units(torque) if is_enabled else 0
         self._control_word = word
         self._units = units
         _COMMAND.pack_into(self.message.data, 0, word, units)
@@ -95,11 +94,3 @@ class DriveChannel:
             return AxisStatus(self.axis, "unknown", "no answer", word, code, error_words(code))
         _, drive, state, _ = step(word, self.goal, self._control_word)
         return AxisStatus(self.axis, state, str(drive), word, code, error_words(code))
-
-    def _keep_holding(self, status_word: int) -> None:
-        """A drive that was found holding by its quick stop goes on with it until it is told otherwise."""
-        if self.goal is Goal.DISABLED and drive_state(status_word) in (
-            DriveState.QUICK_STOP,
-            DriveState.OPERATION_ENABLED,
-        ):
-            self.goal = Goal.STOPPED
