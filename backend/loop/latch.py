@@ -16,8 +16,8 @@ class Latch:
         self._entries: dict[int, tuple[Fault, str, float]] = {}
         self._seen_s: dict[int, float] = {}
 
-    def __bool__(self) -> bool:
-        return bool(self._entries)
+    def __len__(self) -> int:
+        return len(self._entries)
 
     def __contains__(self, fault: Fault) -> bool:
         return fault.number in self._entries
