@@ -212,10 +212,11 @@ class Conduct:
         self._go_on_arming(now)
         self._go_on_resetting(now)
         motor_torque, stiffness_torque = self._torques(row, now)
-        for axis, detail in on.ask(motor_torque, stiffness_torque):
-            if self._stopping is not None:  # not even braking or holding can be computed
-                self._leave(axis)
-            self._note(NOT_A_NUMBER, detail)
+        on.motor_torque, on.stiffness_torque = motor_torque, stiffness_torque
+        if not on.controller.finite and on.axes.any_on:
+            if self._stopping is not None:  # not even holding can be computed
+                self._leave("stiffness")
+            self._note(NOT_A_NUMBER, "")
         self._error = row[INDEX["error"]]
         self.match_motion()
 
@@ -233,8 +234,8 @@ class Conduct:
         on, controller = self.on, self.on.controller
         closed = self.state in CLOSED and now - self._armed_s >= BLEND_S
         return Seen(
-            on.measured, self._error, controller.spring_torque, controller.stiffness, controller.link_disturbance,
-            controller.motor_disturbance, on.homed, on.axes.any_on, closed,
+            on.measured, self._error, controller.spring_torque, controller.stiffness, controller.link_disturbance_estimate,
+            controller.motor_disturbance_estimate, on.homed, on.axes.any_on, closed,
         )  # fmt: skip
 
     def _torques(self, row: NDArray[np.float64], now: float) -> tuple[float, float]:
@@ -271,12 +272,12 @@ class Conduct:
             course = stopping.step(Moment(now, self.monitors.motor_speed, on.controller.spring_torque))
             brakes, share, holds = course
             course_mode = law.BRAKING if brakes else law.STIFFNESS_HOLDS if holds else law.READING
-        motor_torque, stiffness_torque = on.tick(course_mode, share if brakes else 1.0, row)
+        motor_torque, stiffness_torque = on.tick(course_mode, 1.0, row)
         if self.state == "stopping" and stopping.over(now):
             self._end_stop()
         if stopping.off:
             self._stopping = None
-        return motor_torque if brakes else 0.0, stiffness_torque if holds else 0.0
+        return share * motor_torque if brakes else 0.0, stiffness_torque if holds else 0.0
 
     def _home_on(self, now: float) -> float:
         on, homing = self.on, self.homing

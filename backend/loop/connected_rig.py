@@ -11,7 +11,7 @@ from backend.loop.freshness import STOPS, oldest
 from backend.loop.homing import HomingLaw, Stops
 from backend.loop.messages import Connect
 from backend.rigs.faults import CORRUPTED
-from backend.rigs.rig import Axis, Identity, Measured, Rig, RigError
+from backend.rigs.rig import Identity, Measured, Rig, RigError
 from backend.rigs.rig_file import RigFile
 from vssea_core.actuator.parameters import Actuator
 from vssea_core.actuator.spring import stiffness_motor_position
@@ -20,6 +20,7 @@ from vssea_core.control.packing import law_of
 from vssea_core.control.tuning import Tuning
 
 NOTHING_YET = Measured(0.0, 0.0, 0.0, 1, 1, 1, 0.0, 0.0, 0.0, 0.0)
+FARTHEST = 6.3  # rad; a reference can be no farther, and no rig can be armed there
 KNOWN_UNHOMED = tuple(INDEX[name] for name in ("time", "link_position", "motor_position", "tuning_id", "motor_torque"))
 
 
@@ -112,21 +113,10 @@ class ConnectedRig:
             self._blank(row)
         return torques
 
-    def ask(self, motor_torque: float, stiffness_torque: float) -> list[tuple[Axis, str]]:
-        """Take the torques [N m] for the next exchange; return the axes whose torque is no number, and thus zero now."""
-        found: list[tuple[Axis, str]] = []
-        if not math.isfinite(motor_torque):
-            motor_torque = 0.0
-            found.append(("motor", "motor torque"))
-        if not math.isfinite(stiffness_torque):
-            stiffness_torque = 0.0
-            found.append(("stiffness", "stiffness motor torque"))
-        self.motor_torque, self.stiffness_torque = motor_torque, stiffness_torque
-        return found
-
     def begin(self) -> None:
         """Start observers and references from what is measured."""
-        self.controller.begin(self.measured.link_position, self.measured.motor_position, self._theta_ms)
+        link = min(max(self.measured.link_position, -FARTHEST), FARTHEST)
+        self.controller.begin(link, self.measured.motor_position, self._theta_ms)
 
     def install(self, tuning: Tuning, prepared: NDArray[np.float64], tuning_id: int) -> None:
         """Swap the tuning before the next tick. Raises ValueError if it is made for another rate."""
