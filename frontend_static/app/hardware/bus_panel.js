@@ -2,7 +2,7 @@ import { element, setText } from "../element.js";
 import { fixed } from "../quantity.js";
 import { RigPanel } from "./rig_panel.js";
 
-const LINES = ["cycle", "lateness", "missed cycles", "late answers", "round trip", "scheduling"];
+const LINES = ["cycle", "lateness", "missed cycles", "late answers", "round trip"];
 
 /** How well the loop and the bus keep their time. */
 export class BusPanel {
@@ -25,7 +25,8 @@ export class BusPanel {
     this.#tell("missed cycles", bus ? String(bus.missed_cycles) : "–", bus?.missed_cycles > 0);
     this.#tell("late answers", bus ? String(bus.late_answers) : "–", bus?.late_answers > 0, bus ? `in ${bus.cycles} cycles` : "");
     this.#tell("round trip", bus ? `${fixed(bus.round_trip_us, 0)} µs` : "–", false, "from SYNC to the last answer");
-    this.#tell("scheduling", loop.scheduling ?? "–", isOnRig && loop.scheduling === "best effort");
+    setText(this.panel.aside, loop.scheduling ?? "");
+    this.panel.aside.classList.toggle("is-warning", isOnRig && loop.scheduling === "best effort");
   }
 
   #tell(name, text, isWarning = false, title = "") {

@@ -13,7 +13,8 @@ export class FaultPanel {
     this.list = element("ul", { class: "fault-list" });
     this.none = element("p", { class: "hint" }, "None.");
     this.reset = panelButton("Reset", () => this.panel.tell(actions.reset()), "Take back a stop or faults whose cause is gone; the drives stay off");
-    this.panel = new RigPanel("Faults", this.list, this.none, this.reset);
+    this.panel = new RigPanel("Faults", this.list, this.none);
+    this.panel.aside.after(this.reset);
     this.root = this.panel.root;
     session.addEventListener("snapshot", () => this.#show());
     operator.addEventListener("change", () => this.#show());
@@ -45,6 +46,6 @@ function faultLine({ number, sentence, at_s, stands }) {
     { class: "fault-line", "data-stands": String(stands), title: sentence },
     element("span", { class: "fault-number" }, String(number)),
     element("span", { class: "fault-sentence" }, sentence),
-    element("span", { class: "fault-when" }, `${fixed(at_s, 2)} s, ${stands ? "stands" : "gone"}`),
+    element("span", { class: "fault-when" }, `${fixed(at_s, 2)} s`, element("br"), stands ? "stands" : "gone"),
   );
 }

@@ -117,7 +117,7 @@ export class JogPad {
     this.linkSpeed.scale(limits?.jog_speed, choices.linkSpeed);
     this.stiffnessSpeed.scale(limits?.stiffness_jog, { unit: "N·m/rad/s", factor: 1 });
     for (const { slider } of [this.linkSpeed, this.stiffnessSpeed]) slider.disabled = !isPossible;
-    setText(this.hint, isPossible ? "Hold a button, or the arrow keys while the pad has focus." : this.#why(session.snapshot?.state));
+    setText(this.hint, isPossible ? "Hold a button, or arrow keys on the pad." : this.#why(session.snapshot?.state));
   }
 
   #why(state) {

@@ -22,8 +22,7 @@ export function nextStep(snapshot, operator, underWay) {
   if (underWay === "disconnect") return step("connect", "busy", "Disconnecting: drives off, then the simulation again.");
   if (!operator.isOnRig) return step("connect", "next", `The simulated rig runs. ${BEGIN}`);
   const made = ofState(snapshot, rig, step);
-  if (operator.mayChange || !made.action) return made;
-  return { ...made, tone: "refused", words: `${made.words} ${operator.why}`, isPossible: false };
+  return operator.mayChange ? made : notInControl(made, operator);
 }
 
 function ofState(snapshot, rig, step) {
@@ -45,12 +44,22 @@ function ofState(snapshot, rig, step) {
     case "stopping":
       return step("arm", "busy", "Braking to a stop.");
     case "stopped":
-      return step(rig.homed ? "arm" : "home", "fault", snapshot.sentence, "reset");
-    case "fault":
-      return step(rig.homed ? "arm" : "home", "fault", snapshot.sentence, "reset");
+    case "fault": {
+      const stands = (rig.faults ?? []).some((fault) => fault.stands);
+      const words = stands ? `${sentence(snapshot.sentence)} No Reset while a cause stands.` : snapshot.sentence;
+      return step(rig.homed ? "arm" : "home", "fault", words, "reset", !stands);
+    }
     default:
       return step("connect", "busy", snapshot.sentence);
   }
+}
+
+/** What a page that is not in control does next is to get it. */
+function notInControl({ at, tone, words }, { control, session, why }) {
+  const hasAsked = (control.asking ?? []).includes(session.you);
+  const sentences = tone === "fault" ? `${words} ${why}` : hasAsked ? `You have asked for control; ${control.operator} sees it.` : why;
+  const action = hasAsked ? null : control.operator ? "askControl" : "takeControl";
+  return { at, tone: tone === "fault" ? tone : "refused", words: sentences, action, isPossible: true };
 }
 
 /** A clause as a sentence. */

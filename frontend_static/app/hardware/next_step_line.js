@@ -1,9 +1,9 @@
 import { element, setText } from "../element.js";
 import { STEPS, nextStep } from "./next_step.js";
 
-const BUTTONS = { home: "Home", arm: "Arm", hold: "Hold", reset: "Reset" };
+const BUTTONS = { home: "Home", arm: "Arm", hold: "Hold", reset: "Reset", askControl: "Ask for control", takeControl: "Take control" };
 
-/** The line at the top of the view: how far the operator is, what comes next, and one button for it. */
+/** The line at the top of the view: how far the operator is, what comes next, the limits at work, and one button. */
 export class NextStepLine {
   /** @param {object} desk {session, operator, actions} */
   constructor({ session, operator, actions }) {
@@ -11,8 +11,9 @@ export class NextStepLine {
     this.steps = STEPS.map(({ text }, i) => element("li", {}, element("span", { class: "step-mark", "aria-hidden": "true" }, i + 1), text));
     this.words = element("p", { class: "next-words", role: "status" });
     this.refused = element("p", { class: "next-refused", role: "status", hidden: true });
+    this.limits = element("p", { class: "limits-now" });
     this.button = element("button", { type: "button", class: "start", hidden: true, click: () => this.#act() });
-    this.root = element("div", { id: "next-step" }, element("ol", { "aria-label": "Steps" }, ...this.steps), this.words, this.refused, this.button);
+    this.root = element("div", { id: "next-step" }, element("ol", { "aria-label": "Steps" }, ...this.steps), this.words, this.refused, this.limits, this.button);
     session.addEventListener("snapshot", () => this.#show());
     operator.addEventListener("change", () => this.#show());
     actions.addEventListener("change", () => this.#show());
@@ -20,6 +21,9 @@ export class NextStepLine {
   }
 
   #show() {
+    const limits = this.session.snapshot?.limits.join("; ") ?? "";
+    setText(this.limits, limits);
+    this.limits.title = limits;
     const { at, tone, words, action, isPossible } = nextStep(this.session.snapshot ?? {}, this.operator, this.actions.underWay);
     const now = STEPS.findIndex(({ id }) => id === at);
     for (const [i, step] of this.steps.entries()) {

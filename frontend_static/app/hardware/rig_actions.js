@@ -16,6 +16,14 @@ export class RigActions extends EventTarget {
     this.underWay = ""; // name of a command that takes its time
   }
 
+  askControl() {
+    return this.operator.ask();
+  }
+
+  takeControl() {
+    return this.operator.take();
+  }
+
   connect(name) {
     return this.#slowly("connect", this.session.command("connect_rig", { rig: name }, CONNECT_LIMIT_MS));
   }
