@@ -25,7 +25,7 @@ export class ArmPanel {
     const isArmed = isOnRig && MOVING.has(state);
     const reasons = isOnRig && !isArmed ? (rig.cannot_arm ?? []) : [];
     this.arm.disabled = !isOnRig || !mayChange || state !== "ready" || reasons.length > 0;
-    this.disarm.disabled = !mayChange || !isArmed;
+    this.disarm.disabled = !session.isConnected || !isArmed; // as safe as STOP: needs no control
     setText(this.panel.aside, !isOnRig ? "" : isArmed ? "armed" : state === "stopping" ? "braking" : "drives off");
     this.panel.root.dataset.armed = String(isArmed);
     this.reasons.hidden = reasons.length === 0;

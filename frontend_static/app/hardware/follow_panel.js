@@ -25,7 +25,7 @@ export class FollowPanel {
     const state = session.snapshot?.state;
     const mayMove = operator.isOnRig && operator.mayChange;
     this.follow.disabled = !mayMove || state !== "armed";
-    this.hold.disabled = !mayMove || state !== "running";
-    setText(this.words, referenceWords(operator.rig.wanted_reference ?? session.document.value("reference")));
+    this.hold.disabled = !operator.isOnRig || !session.isConnected || state !== "running"; // as safe as STOP: needs no control
+    setText(this.words, referenceWords(session.document.value("reference")));
   }
 }

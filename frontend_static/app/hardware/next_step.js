@@ -20,6 +20,7 @@ export function nextStep(snapshot, operator, underWay) {
   if (!operator.session.isConnected) return step("connect", "refused", "No connection to the server; what is shown is old.");
   if (underWay === "connect") return step("connect", "busy", "Connecting: the nodes are looked for and configured. Nothing moves.");
   if (underWay === "disconnect") return step("connect", "busy", "Disconnecting: drives off, then the simulation again.");
+  if (!operator.isOnRig && rig.name) return step("connect", "busy", snapshot.sentence);
   if (!operator.isOnRig) return step("connect", "next", `The simulated rig runs. ${BEGIN}`);
   const made = ofState(snapshot, rig, step);
   return operator.mayChange ? made : notInControl(made, operator);

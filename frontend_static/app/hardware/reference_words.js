@@ -11,6 +11,7 @@ export function referenceWords(reference) {
   if (kind === "chirp")
     return `chirp ${briefly(reference.amplitude)} rad, ${briefly(reference.start_frequency_hz)} to ${briefly(reference.end_frequency_hz)} Hz`;
   if (kind === "multisine") return `${reference.components.length} sines`;
+  if (kind === "jog" && !reference.velocity) return "none set: it would hold where it is";
   if (kind === "jog") return `jog at ${briefly(reference.velocity)} rad/s`;
   if (kind === "recorded") return `${reference.times_s.length} recorded samples`;
   return kind;

@@ -24,8 +24,10 @@ export class RigActions extends EventTarget {
     return this.operator.take();
   }
 
-  connect(name) {
-    return this.#slowly("connect", this.session.command("connect_rig", { rig: name }, CONNECT_LIMIT_MS));
+  /** Connect, and be in control. */
+  async connect(name) {
+    await this.#slowly("connect", this.session.command("connect_rig", { rig: name }, CONNECT_LIMIT_MS));
+    this.operator.begin();
   }
 
   disconnect() {

@@ -1,6 +1,8 @@
 import { element, setText } from "../element.js";
-import { inputText } from "../quantity.js";
+import { displayUnit, inputText, significant } from "../quantity.js";
 import { wordOf } from "./choice_word.js";
+
+const SHOWN = ["peak_error", "rms_error", "peak_torque", "torque_chatter", "saturated"];
 
 /** What the simulation says of a change that is not yet on the rig, with Apply and Discard. */
 export class TryResult {
@@ -30,29 +32,30 @@ export class TryResult {
     if (changes === null) return;
     setText(this.changes, `Not on the rig yet: ${this.#changesWords(changes)}`);
     this.changes.title = this.changes.textContent;
-    setText(this.words, isBusy ? "Simulating…" : problem || (result?.sentence ?? ""));
+    setText(this.words, isBusy ? "Simulating…" : problem || (result?.ok === false ? result.sentence : "In simulation it does well."));
     this.words.classList.toggle("is-warning", Boolean(problem) || result?.ok === false);
     this.words.hidden = this.words.textContent === "";
     this.apply.disabled = isBusy || problem !== "" || !this.operator.mayChange;
     this.#showFigures(result);
   }
 
-  /** Figures are {label, unit, now, then}. */
+  /** Its metrics are {name: [of the present tuning, of this one]}; names and units are those of the live figures. */
   #showFigures(result) {
-    const figures = result?.figures ?? [];
-    this.figures.hidden = figures.length === 0;
+    const known = this.session.snapshot?.metrics?.items ?? [];
+    const shown = SHOWN.map((name) => known.find((item) => item.name === name)).filter((item) => item && result?.metrics?.[item.name]);
+    this.figures.hidden = shown.length === 0;
     this.figures.replaceChildren(
-      ...figures.flatMap(({ label, unit, now, then }) => [
-        element("dt", {}, label),
-        element("dd", {}, `${now} → `, element("strong", {}, then), element("small", {}, ` ${unit}`)),
-      ]),
+      ...shown.flatMap(({ name, label, unit }) => {
+        const { unit: word, factor } = displayUnit(unit);
+        const [now, then] = result.metrics[name].map((value) => significant(value === null ? null : value * factor));
+        return [element("dt", {}, label), element("dd", {}, `${now} → `, element("strong", {}, then), element("small", {}, ` ${word}`))];
+      }),
     );
   }
 
   #changesWords(changes) {
     const said = Object.entries(changes).map(([path, value]) => {
-      const names = path.split(".");
-      const name = names.pop() === "kind" ? names.at(-1) : path.split(".").at(-1);
+      const name = path.split(".").filter((part) => part !== "kind").join(" ");
       const before = this.session.document.value(`tuning.${path}`);
       return `${name.replaceAll("_", " ")} ${worded(before)} → ${worded(value)}`;
     });

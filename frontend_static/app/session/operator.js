@@ -60,8 +60,16 @@ export class Operator extends EventTarget {
     return "Nobody is in control: take control to change anything.";
   }
 
-  take() {
-    return this.session.command("take_control");
+  async take() {
+    await this.session.command("take_control");
+    this.begin();
+  }
+
+  /** Renew from now on: a command has just given control to this page, and the snapshot that says so is still to come. */
+  begin() {
+    if (this.#timer !== null || document.hidden || !this.session.isConnected) return;
+    this.#timer = setInterval(() => this.#renew(), RENEW_MS);
+    this.#renew();
   }
 
   ask() {
@@ -88,9 +96,7 @@ export class Operator extends EventTarget {
   }
 
   #resume() {
-    if (this.#timer !== null || document.hidden || !this.isYou || !this.session.isConnected) return;
-    this.#timer = setInterval(() => this.#renew(), RENEW_MS);
-    this.#renew();
+    if (this.isYou) this.begin();
   }
 
   #silence() {

@@ -1,6 +1,11 @@
 import { element, setText } from "../element.js";
 
-const WORDS = { emulated: "EMULATED", real: "REAL" };
+const WORDS = { emulated: "EMULATED", real: "REAL", connecting: "connecting" };
+const TITLES = {
+  emulated: (name) => `The emulated rig ${name}: nothing real moves`,
+  real: (name) => `The real rig ${name}: it moves`,
+  connecting: (name) => `${name} is being connected: its drives are off`,
+};
 
 /** Which rig moves when this page says so: simulated, emulated or real. A line along the whole top says the same. */
 export class RigMark {
@@ -15,11 +20,12 @@ export class RigMark {
 
   #show() {
     const { rig } = this.session.snapshot;
-    this.mark.dataset.kind = rig.kind;
-    document.body.dataset.rig = rig.kind;
-    setText(this.kind, WORDS[rig.kind] ?? rig.label);
-    setText(this.name, WORDS[rig.kind] ? (rig.name ?? "") : "");
+    const kind = rig.name && !rig.connected ? "connecting" : rig.kind; // which kind it is, the rig has still to say
+    this.mark.dataset.kind = kind;
+    document.body.dataset.rig = kind;
+    setText(this.kind, WORDS[kind] ?? rig.label);
+    setText(this.name, WORDS[kind] ? (rig.name ?? "") : "");
     this.name.hidden = this.name.textContent === "";
-    this.mark.title = rig.kind === "real" ? `The real rig ${rig.name}: it moves` : rig.kind === "emulated" ? `The emulated rig ${rig.name}: nothing real moves` : rig.label;
+    this.mark.title = TITLES[kind]?.(rig.name) ?? rig.label;
   }
 }
