@@ -52,7 +52,7 @@ class Emulator:
 
     def receive(self, can_id: int, data: bytes, now: float) -> None:
         """Take a frame of the host that arrived at `now`."""
-        self._advance(now)
+        self.advance(now)
         self.wire.into(can_id, data)
 
     def turn(self, now: float) -> None:
@@ -61,7 +61,7 @@ class Emulator:
             self.wire.turn(now)
             return
         self._next_turn = now + TURN_S
-        self._advance(now)
+        self.advance(now)
         self.network.turn(now)
         for node in self.nodes:
             node.turn()
@@ -113,7 +113,8 @@ class Emulator:
             "skipped_s": self.plant.skipped_s,
         }
 
-    def _advance(self, now: float) -> None:
+    def advance(self, now: float) -> None:
+        """Let the plant come to `now`."""
         now = max(now, self._plant_time)
         self.network.now = now
         self.plant.advance(now - self._plant_time)

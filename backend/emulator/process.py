@@ -80,7 +80,7 @@ class Server:
         self.emulator.receive(can_id, data, arrived)
 
     def _answer(self, request: dict[str, Any]) -> dict[str, Any]:
-        self.emulator.turn(time.monotonic())
+        self.emulator.advance(time.monotonic())
         return answer(self.emulator, self.faults, request)
 
     def run(self) -> None:

@@ -46,6 +46,7 @@ class Client:
         self.connection = connection
         self.raw = False
         self.frames_from = 0.0
+        self.early = bytearray()  # frames until then
         self.waiting = bytearray()
         self.arrived = 0.0  # when the newest data came, by time.monotonic
         self._text = ""
@@ -87,6 +88,7 @@ class SocketcandServer:
         self.port: int = self._listening.getsockname()[1]
         self._clients: list[Client] = []
         self._outgoing = bytearray()
+        self._held: set[Client] = set()  # shortly after their handshake
         selector.register(self._listening, selectors.EVENT_READ, self._accept)
 
     def send(self, can_id: int, data: bytes) -> None:
@@ -100,12 +102,10 @@ class SocketcandServer:
 
     def flush(self) -> None:
         """Write what was sent since the last time."""
-        if not self._outgoing:
+        if not self._outgoing and not self._held:
             return
-        now = time.monotonic()
         for client in tuple(self._clients):
-            if client.raw and now >= client.frames_from:
-                self._write(client, self._outgoing)
+            self._show(client, self._outgoing)
         self._outgoing.clear()
 
     def close(self) -> None:
@@ -143,25 +143,30 @@ class SocketcandServer:
                 frame = parsed_send(words)
                 if frame is not None:
                     client.frames_from = 0.0
-                    self._pass_on(client, frame)
+                    for other in tuple(self._clients):
+                        if other is not client:
+                            self._show(other, frame_text(*frame))
                     self._receive(*frame, client.arrived)
             case ["open", _]:
                 self._write(client, b"< ok >")
             case ["rawmode"]:
                 client.raw, client.frames_from = True, time.monotonic() + HELD_BACK_S
+                self._held.add(client)
                 self._write(client, b"< ok >")
             case ["echo"]:
                 self._write(client, b"< echo >")
             case _ if not client.raw:
                 self._write(client, b"< error unknown command >")
 
-    def _pass_on(self, sender: Client, frame: tuple[int, bytes]) -> None:
-        if len(self._clients) < 2:
-            return
-        text, now = frame_text(*frame), time.monotonic()
-        for client in tuple(self._clients):
-            if client is not sender and client.raw and now >= client.frames_from:
-                self._write(client, text)
+    def _show(self, client: Client, text: bytes | bytearray) -> None:
+        if client in self._held:
+            client.early += text
+            if time.monotonic() < client.frames_from:
+                return
+            self._held.discard(client)
+            text = client.early
+        if client.raw and text:
+            self._write(client, text)
 
     def _write(self, client: Client, data: bytes | bytearray) -> None:
         if client not in self._clients:
@@ -185,5 +190,6 @@ class SocketcandServer:
     def _let_go(self, client: Client) -> None:
         if client in self._clients:
             self._clients.remove(client)
+            self._held.discard(client)
             self._selector.unregister(client.connection)
             client.connection.close()
