@@ -95,7 +95,7 @@ class Conduct:
         reason = self.cannot_home()
         if reason:
             raise ValueError(reason)
-        self.homing, on.homed, on.span_found = on.homing_law(), False, None
+        self.homing = on.begin_homing()
         self._stopping = None
         self.monitors.restart()
         self._enable_until = self._clock() + ENABLE_S

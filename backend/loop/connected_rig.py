@@ -128,8 +128,10 @@ class ConnectedRig:
         self.controller.install(tuning, prepared, tuning_id)
         self.tuning_period_s = period_s
 
-    def homing_law(self) -> HomingLaw:
-        """Return the law that homes this rig's stiffness axis, at its beginning."""
+    def begin_homing(self) -> HomingLaw:
+        """Forget where theta_ms was and return the law that homes the stiffness axis, at its beginning."""
+        self.homed, self.span_found = False, None
+        self.rig.home(0.0)
         mechanism = self.actuator.stiffness
         constant = mechanism.spring_constant
         stiff, soft = (stiffness_motor_position(k, constant) for k in (mechanism.stiffest, mechanism.softest))
