@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from vssea_core.tick.controller import Controller, RigLimits
 
 from backend.loop.axes import Axes, Found
 from backend.loop.freshness import STOPS, oldest
@@ -18,6 +17,7 @@ from vssea_core.actuator.spring import stiffness_motor_position
 from vssea_core.channels import INDEX
 from vssea_core.control.packing import law_of
 from vssea_core.control.tuning import Tuning
+from vssea_core.tick.controller import Controller, RigLimits
 
 NOTHING_YET = Measured(0.0, 0.0, 0.0, 1, 1, 1, 0.0, 0.0, 0.0, 0.0)
 FARTHEST = 6.3  # rad; a reference can be no farther, and no rig can be armed there
@@ -128,8 +128,10 @@ class ConnectedRig:
         self.controller.install(tuning, prepared, tuning_id)
         self.tuning_period_s = period_s
 
-    def homing_law(self) -> HomingLaw:
-        """Return the law that homes this rig's stiffness axis, at its beginning."""
+    def begin_homing(self) -> HomingLaw:
+        """Forget where theta_ms was and return the law that homes the stiffness axis, at its beginning."""
+        self.homed, self.span_found = False, None
+        self.rig.home(0.0)
         mechanism = self.actuator.stiffness
         constant = mechanism.spring_constant
         stiff, soft = (stiffness_motor_position(k, constant) for k in (mechanism.stiffest, mechanism.softest))
