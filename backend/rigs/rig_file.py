@@ -12,6 +12,8 @@ from pydantic import Field, JsonValue, model_validator
 from vssea_core.fields import Part
 
 Sign = Literal[1, -1]
+SafetyObject = Literal[0x1016, 0x6007, 0x605A, 0x605E, 0x6072]
+"""Watch on this computer, reactions to lost connection, quick stop and fault, and the drive's own torque limit."""
 
 
 class Bus(Part):
@@ -45,6 +47,9 @@ class Drive(Part):
     quick_stop_deceleration: int | None = Field(
         None, ge=1, description="Object 0x6085 in the drive's unit; null = as it is."
     )
+    without: tuple[SafetyObject, ...] = Field(
+        (), description="Safety objects that this drive lacks and that you accept to be missing."
+    )
 
 
 class LinkEncoder(Part):
@@ -54,7 +59,7 @@ class LinkEncoder(Part):
     node: int | None = Field(None, ge=1, le=127, description="CANopen node number, where source is node.")
     index: int = Field(0x6004, description="Object with the position: 0x6004 of CiA 406, the vendor's own on a drive.")
     subindex: int = 0
-    bits: int = Field(32, description="Length of that object in the PDO.")
+    bits: Literal[8, 16, 32] = Field(32, description="Length of that object in the PDO.")
     counts_per_turn: int = Field(ge=4, description="Counts in a turn of the link.")
     sign: Sign = 1
     zero: int = Field(0, description="Counts where the link's position is 0 rad.")
