@@ -39,7 +39,9 @@ def test_each_axis_is_told_what_to_do_when_this_computer_is_gone() -> None:
     fake = FakeRig().ready()
     for drive, quick_stop in ((fake.motor, 2), (fake.stiffness, 6)):
         assert drive.value(0x6007) == 3, "quick stop, not coasting"
-        assert drive.value(0x605A) == quick_stop, "the equilibrium motor lets go after its ramp, the stiffness motor holds"
+        assert drive.value(0x605A) == quick_stop, (
+            "the equilibrium motor lets go after its ramp, the stiffness motor holds"
+        )
         assert drive.value(0x605E) == 2
         assert drive.value(0x1016, 1, "<I") == 127 << 16 | 100
         assert drive.value(0x1017, 0, "<H") == 100
@@ -63,7 +65,9 @@ def test_the_quick_stop_ramp_is_the_drives_own_unless_the_file_has_one() -> None
 
 def test_all_that_is_written_is_read_back() -> None:
     drive = FakeRig().ready().motor
-    assert {0x1400, 0x1600, 0x1800, 0x1A00, 0x1A01, 0x6060, 0x6072, 0x6007, 0x605A, 0x605E, 0x1016} <= {i for i, _ in drive.writes}
+    assert {0x1400, 0x1600, 0x1800, 0x1A00, 0x1A01, 0x6060, 0x6072, 0x6007, 0x605A, 0x605E, 0x1016} <= {
+        i for i, _ in drive.writes
+    }
     assert set(drive.writes) <= set(drive.reads)
 
 
@@ -72,7 +76,9 @@ def test_all_that_is_written_is_read_back() -> None:
 def test_a_drive_without_a_safety_object_is_refused_unless_the_file_accepts_it(index: int, how: str) -> None:
     fake = FakeRig()
     getattr(fake.stiffness, how).add(index)
-    with pytest.raises(RigError, match=f"stiffness drive, node 2: 0x{index:04X}.*list 0x{index:04X} in `without`") as refusal:
+    with pytest.raises(
+        RigError, match=f"stiffness drive, node 2: 0x{index:04X}.*list 0x{index:04X} in `without`"
+    ) as refusal:
         fake.ready()
     assert refusal.value.fault is CONFIGURATION
     fake = FakeRig(changed(stiffness={"without": [index]}))
@@ -92,7 +98,7 @@ def test_what_the_exchange_needs_is_never_accepted_missing(index: int) -> None:
 def test_a_drive_that_stays_in_another_mode_is_refused() -> None:
     fake = FakeRig()
     fake.motor.refuses.add(0x6060)
-    with pytest.raises(RigError, match="0x6060 mode of operation: .*object does not exist"):
+    with pytest.raises(RigError, match=r"0x6060 mode of operation: .*object does not exist"):
         fake.ready()
     fake = FakeRig()
     fake.motor.entries.pop((0x6060, 0))

@@ -202,7 +202,7 @@ def test_an_emergency_is_a_fault_of_its_node_with_words() -> None:
     assert fake.rig.bus_faults() == (
         (MOTOR_DRIVE, "motor drive, node 1: 0x2310 over-current"),
         (STIFFNESS_DRIVE, "stiffness drive, node 2: 0x7305 incremental encoder 1 fault"),
-        (LINK_ENCODER, "link encoder, node 3: 0x5000 hardware of the drive"),
+        (LINK_ENCODER, "link encoder, node 3: 0x5000 hardware of the device"),
     )
     assert fake.rig.axis("motor").error_words == "0x2310 over-current"
     fake.motor.emergency(0)

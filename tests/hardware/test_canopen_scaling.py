@@ -43,7 +43,9 @@ def test_too_much_saturates_and_no_number_is_no_torque(torque: float) -> None:
 
 
 @given(st.integers(-(2**31), 2**31 - 1), st.lists(st.integers(-(2**30), 2**30), max_size=20), signs)
-def test_the_motor_position_goes_on_beyond_the_wrap_around_of_its_counter(start: int, moves: list[int], sign: int) -> None:
+def test_the_motor_position_goes_on_beyond_the_wrap_around_of_its_counter(
+    start: int, moves: list[int], sign: int
+) -> None:
     drive = RIG_FILE.motor.model_copy(update={"sign": sign})
     counter = MotorPosition(drive, GEAR_RATIO)
     counts = start

@@ -42,10 +42,11 @@ def test_every_status_word_is_the_one_state_of_the_table() -> None:
 
 
 def test_operation_is_asked_for_only_towards_the_goal_enabled() -> None:
-    asked = {(drive_state(status), goal) for status, goal, before in EVERYTHING if may_enable(step(status, goal, before)[0])}
+    asked = {
+        (drive_state(status), goal) for status, goal, before in EVERYTHING if may_enable(step(status, goal, before)[0])
+    }
     assert asked == {
-        (state, Goal.ENABLED)
-        for state in (DriveState.SWITCHED_ON, DriveState.OPERATION_ENABLED, DriveState.QUICK_STOP)
+        (state, Goal.ENABLED) for state in (DriveState.SWITCHED_ON, DriveState.OPERATION_ENABLED, DriveState.QUICK_STOP)
     }
 
 
@@ -79,7 +80,9 @@ def test_a_fault_ends_the_wish_to_be_enabled() -> None:
             assert after.control_word in (0, FAULT_RESET)
 
 
-@pytest.mark.parametrize("state", [s for s in DriveState if s not in (DriveState.SWITCHED_ON, DriveState.OPERATION_ENABLED)])
+@pytest.mark.parametrize(
+    "state", [s for s in DriveState if s not in (DriveState.SWITCHED_ON, DriveState.OPERATION_ENABLED)]
+)
 def test_a_drive_that_left_operation_by_itself_is_not_enabled_again(state: DriveState) -> None:
     status = WORDS_OF.get(state, 0x01)
     assert drive_state(status) is state
@@ -106,7 +109,12 @@ def test_whatever_the_drive_does_after_a_fault_it_stays_off_until_a_new_goal(wor
 
 def test_the_way_to_operation_takes_the_three_words_of_the_standard() -> None:
     goal, before, words = Goal.ENABLED, 0, []
-    for state in (DriveState.SWITCH_ON_DISABLED, DriveState.READY, DriveState.SWITCHED_ON, DriveState.OPERATION_ENABLED):
+    for state in (
+        DriveState.SWITCH_ON_DISABLED,
+        DriveState.READY,
+        DriveState.SWITCHED_ON,
+        DriveState.OPERATION_ENABLED,
+    ):
         before, _, axis, goal = step(WORDS_OF[state], goal, before)
         words.append((before, axis))
     assert words == [(0x06, "enabling"), (0x07, "enabling"), (0x0F, "enabling"), (0x0F, "enabled")]
@@ -119,7 +127,9 @@ def test_stopping_keeps_power_on_and_lowers_the_quick_stop_bit() -> None:
 
 
 def test_disabling_takes_the_voltage_off_in_every_state() -> None:
-    assert {step(status, Goal.DISABLED, before).control_word for status, before in product(STATUS_WORDS, CONTROL_WORDS)} == {0}
+    assert {
+        step(status, Goal.DISABLED, before).control_word for status, before in product(STATUS_WORDS, CONTROL_WORDS)
+    } == {0}
 
 
 @pytest.mark.parametrize(
@@ -127,7 +137,7 @@ def test_disabling_takes_the_voltage_off_in_every_state() -> None:
     [
         (0x2310, "0x2310 over-current"),
         (0x7310, "0x7310 sensor"),
-        (0x6320, "0x6320 software of the drive"),
+        (0x6320, "0x6320 software of the device"),
         (0x8130, "0x8130 the heartbeat of this computer stayed away"),
         (0xFF07, "0xFF07 specific to this device"),
         (0xB000, "0xB000 unknown error"),

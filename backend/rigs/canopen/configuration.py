@@ -4,7 +4,8 @@ A drive that refuses what its safety needs is refused, unless the rig's file acc
 reported.
 """
 
-from typing import Literal, NamedTuple
+from dataclasses import dataclass, replace
+from typing import Literal
 
 from backend.rigs.canopen import objects
 from backend.rigs.canopen.nodes import Node, NodeError
@@ -22,7 +23,8 @@ _NO_RTR, _INVALID = 1 << 30, 1 << 31
 Need = Literal["needed", "safety", "optional"]
 
 
-class Setting(NamedTuple):
+@dataclass(frozen=True)
+class Setting:
     """One object and the value it is to have."""
 
     index: int
@@ -93,7 +95,7 @@ class Configurator:
     def pdo(self, pdo: Pdo) -> None:
         """Lay out a PDO and make it synchronous, once a SYNC. Raises RigError."""
         identifier = Setting(pdo.communication, 1, "<I", pdo.can_id, "needed", "PDO identifier", keep=_NO_RTR)
-        self._set(identifier._replace(value=pdo.can_id | _INVALID))
+        self._set(replace(identifier, value=pdo.can_id | _INVALID))
         self._set(Setting(pdo.communication, 2, "<B", 1, "needed", "PDO transmission type"))
         if not self._is_mapped(pdo):
             self._set(Setting(pdo.mapping, 0, "<B", 0, "needed", "PDO mapping"))

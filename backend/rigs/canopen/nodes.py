@@ -12,8 +12,8 @@ from typing import Any, Literal
 
 import can
 import canopen
-from canopen.sdo import SdoClient, SdoCommunicationError
-from canopen.sdo.exceptions import SdoError
+from canopen.sdo.client import SdoClient
+from canopen.sdo.exceptions import SdoCommunicationError, SdoError
 
 Clock = Callable[[], float]
 ANSWER_TIME_LIMIT_S = 0.5
@@ -38,7 +38,7 @@ class _Client(SdoClient):
             left = limit - self.clock()
             if left <= 0.0:
                 raise SdoCommunicationError("no answer")
-            message = self.network.bus.recv(left)
+            message = self.network.bus.recv(left) if self.network.bus else None
             if message is not None:
                 hand_on(self.network, message)
         self.RESPONSE_TIMEOUT = 0.0  # it is there

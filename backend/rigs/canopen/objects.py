@@ -1,6 +1,7 @@
 """The objects of CiA 301, 402 and 406 that are used here, and how PDOs are laid out."""
 
 import struct
+from dataclasses import dataclass
 from typing import NamedTuple
 
 DEVICE_TYPE, DEVICE_NAME, IDENTITY = 0x1000, 0x1008, 0x1018
@@ -26,7 +27,8 @@ FORMS = {8: "b", 16: "h", 32: "i"}
 """Letters of struct for a signed entry of so many bits."""
 
 
-class Entry(NamedTuple):
+@dataclass(frozen=True)
+class Entry:
     """One object in a PDO."""
 
     index: int

@@ -1,6 +1,7 @@
 """Opening the CAN bus that a rig's file names, with a sentence where that fails."""
 
 import socket
+from typing import Any
 
 import can
 
@@ -13,7 +14,7 @@ LISTENING_TIME_LIMIT_S = 1.0
 
 def open_bus(bus: Bus) -> can.BusABC:
     """Return the open bus. Raises RigError where it cannot be opened."""
-    config = {"interface": bus.interface, "channel": bus.channel, **bus.options}
+    config: dict[str, Any] = {"interface": bus.interface, "channel": bus.channel, **bus.options}
     if bus.bitrate is not None:
         config["bitrate"] = bus.bitrate
     if bus.interface == "socketcand":

@@ -176,9 +176,9 @@ class CanopenRig:
 
     def close(self) -> None:
         """Disable both axes if they answer, then close the bus. Never raises."""
-        nodes = list(self._nodes.items())
-        releases = [partial(self._release, place, node) for place, node in nodes]
-        for end in (self._disable, *releases, self._shut):
+        ends: list[Callable[[], None]] = [self._disable]
+        ends += [partial(self._release, place, node) for place, node in self._nodes.items()]
+        for end in (*ends, self._shut):
             try:
                 end()
             except Exception:
