@@ -10,7 +10,7 @@ from backend.compute.pool import JobFailedError, JobRefusedError, Pool
 from backend.problem import Problem
 from backend.rigs.library import RigLibrary
 from backend.rigs.rig_file import RigFile
-from backend.session.rig_files import known_rig, listed_rig
+from backend.session.rig_tuning import actuator_of
 from backend.session.session import Session
 
 LARGEST_FILE = 100_000
@@ -25,25 +25,22 @@ def rig_routes(session: Session, pool: Pool, library: RigLibrary) -> APIRouter:
     @router.get("/rigs")
     async def listed() -> Document:
         """Return all rigs: the built-in one, and those in the data folder."""
-        return {"rigs": [listed_rig(entry) for entry in await asyncio.to_thread(library.list)]}
+        return {"rigs": [entry.document() for entry in await asyncio.to_thread(library.list)]}
 
     @router.get("/rigs/{name}")
     async def one(name: str) -> Document:
-        """Return one rig."""
-        entries = await asyncio.to_thread(library.list)
-        found = next((entry for entry in entries if entry.name == name), None)
-        if found is None:
-            raise Problem(404, "No such rig", f"There is no rig {name!r}; known: {', '.join(e.name for e in entries)}.")
-        return listed_rig(found)
+        """Return one rig, with the text of its file."""
+        entry = await asyncio.to_thread(library.get, name)
+        return entry.document() | {"text": entry.text}
 
     @router.put("/rigs/{name}", openapi_extra={"requestBody": {"content": {"application/toml": {}}}})
     async def put(name: str, request: Request, by: By) -> Document:
         """Keep a rig's file; the body is TOML, and a file that is not right is refused with the reason."""
         _refuse_connected(session, name, "changed")
         text = await _text_of(request)
-        await asyncio.to_thread(library.put, name, text)
+        entry = await asyncio.to_thread(library.put, name, text)
         session.note("rig", f"file of rig {name} saved", by)
-        return await one(name)
+        return entry.document() | {"text": entry.text}
 
     @router.delete("/rigs/{name}", status_code=204)
     async def delete(name: str, by: By) -> Response:
@@ -62,19 +59,18 @@ def rig_routes(session: Session, pool: Pool, library: RigLibrary) -> APIRouter:
                 "Rig connected",
                 f"Rig {session.rig.name} is connected, and its bus is in use; disconnect it first.",
             )
-        rig = await asyncio.to_thread(known_rig, library, name)
-        lines = await _checked(pool, rig)
+        rig = await asyncio.to_thread(library.file, name)
+        actuator = await asyncio.to_thread(actuator_of, session, rig)
+        lines = await _checked(pool, rig, actuator.motor.gear_ratio)
         return {"ok": all(line["ok"] for line in lines), "lines": lines}
 
     return router
 
 
-async def _checked(pool: Pool, rig: RigFile) -> list[Document]:
+async def _checked(pool: Pool, rig: RigFile, gear_ratio: float) -> list[Document]:
     try:
-        lines: list[Document] = await pool.rig_check.run("check", rig, time_limit_s=CHECK_LIMIT_S)
-    except JobRefusedError as refusal:
-        return [{"what": "rig", "found": None, "expected": None, "ok": False, "sentence": str(refusal)}]
-    except JobFailedError as failure:
+        lines: list[Document] = await pool.rig_check.run("check", rig, gear_ratio, time_limit_s=CHECK_LIMIT_S)
+    except (JobRefusedError, JobFailedError) as failure:
         raise Problem(503, "Not checked", f"The rig could not be checked: {failure}.") from failure
     finally:
         await pool.rig_check.stop()  # it holds libraries that nobody else needs

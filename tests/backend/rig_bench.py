@@ -48,7 +48,7 @@ class Shelf:
     def __init__(self, *rigs: RigFile) -> None:
         self.rigs = {rig.name: rig for rig in rigs or (EMULATOR,)}
 
-    def get(self, name: str) -> RigFile:
+    def file(self, name: str) -> RigFile:
         if name not in self.rigs:
             raise Problem(404, "No such rig", f"There is no rig {name!r}.")
         return self.rigs[name]
