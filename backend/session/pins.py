@@ -89,7 +89,7 @@ class Pins:
         """Keep what a trigger captured, or what lies around a fault. Raises Problem if it cannot be kept."""
         excerpt = await self._excerpt(epoch, from_s, to_s, by)
         captured = [old.id for old in self._excerpts.values() if old.kind == kind]
-        for number in captured[: len(captured) + 1 - MOST_CAPTURED]:
+        for number in captured[: max(0, len(captured) + 1 - MOST_CAPTURED)]:
             await self._remove(number)
         recording, label = self._recordings.of_run(epoch), label[:LONGEST_LABEL]
         return await self._keep(replace(excerpt, recording=recording, kind=kind, label=label, at_s=at_s, shown=False))

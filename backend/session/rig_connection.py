@@ -25,14 +25,14 @@ CONNECT_LIMIT_S = 30.0
 class RigFiles(Protocol):
     """Who knows the rigs by name. Its methods may wait for a disk, so they are called in threads."""
 
-    def get(self, name: str) -> RigFile:
+    def file(self, name: str) -> RigFile:
         """Return a rig's file. Raises Problem 404 if there is none, 422 if it is not right."""
 
 
 class NoRigs:
     """No rig is known."""
 
-    def get(self, name: str) -> RigFile:
+    def file(self, name: str) -> RigFile:
         """Raise Problem 404."""
         raise Problem(404, "No such rig", f"There is no rig {name!r}.")
 
@@ -109,7 +109,7 @@ class RigConnection:
         return {"rig": file.name, "key": party.key, "tuning_id": session.status.tuning_id}
 
     async def _planned(self, name: str) -> tuple[Begun, RigFile]:
-        file = await asyncio.to_thread(self._files.get, name)
+        file = await asyncio.to_thread(self._files.file, name)
         return await begun_scenario(self._session, file), file
 
     async def _open(self, file: RigFile, begun: Begun) -> None:

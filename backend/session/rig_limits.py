@@ -58,13 +58,13 @@ def check_jog(limits: Limits, link: float, stiffness: float) -> None:
 
 
 def check_move(limits: Limits, position: float, speed: float) -> None:
-    """Raise Problem if a move ends outside the rig's limits or is faster than its motor may be."""
+    """Raise Problem if a move ends outside the rig's limits or is faster than a jog may be."""
     if not limits.link_low <= position <= limits.link_high:
         raise refused(
             f"position is {position:g} rad; expected {limits.link_low:g} to {limits.link_high:g} rad, the rig's limits."
         )
-    if speed > limits.motor_speed:
-        raise refused(f"speed is {speed:g} rad/s; expected at most {limits.motor_speed:g} rad/s, the rig's limit.")
+    if speed > limits.jog_speed:
+        raise refused(f"speed is {speed:g} rad/s; expected at most {limits.jog_speed:g} rad/s, the rig's limit.")
 
 
 def peak_torque(term: Disturbance) -> float:

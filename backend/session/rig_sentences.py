@@ -1,11 +1,10 @@
 """What a session on a rig says of itself: its state with the reason, and what to do."""
 
-import re
-
 from backend.loop.messages import State
+from backend.rigs.faults import FAULTS
 from backend.session.rig_state import RigState
 
-NUMBERED = re.compile(r"Fault \d+: ")
+AT_REST = ("drives off", "the stiffness axis holds")
 
 
 def rig_sentence(state: State, reason: str | None, time_s: float, by: str | None, rig: RigState) -> str:
@@ -27,21 +26,23 @@ def rig_sentence(state: State, reason: str | None, time_s: float, by: str | None
         case "stopping":
             return f"Stopping: braking{f' ({reason})' if reason else ''}"
         case "stopped":
-            return _stopped(reason, time_s, by)
+            return _stopped(reason, time_s, by, motion)
         case "fault":
             return _fault(reason, rig)
         case _:
             return state.capitalize()
 
 
-def _stopped(reason: str | None, time_s: float, by: str | None) -> str:
+def _stopped(reason: str | None, time_s: float, by: str | None, motion: str) -> str:
     if by is not None:
-        return f"Stopped by {by} at {time_s:.1f} s: braked, drives off. Reset to go on"
-    return f"Stopped at {time_s:.1f} s: {reason or 'braked, drives off. Reset to go on'}"
+        return f"Stopped by {by} at {time_s:.1f} s{f': {motion}' if motion in AT_REST else ''}. Reset to go on"
+    return f"Stopped at {time_s:.1f} s: {reason or 'Reset to go on'}"
 
 
 def _fault(reason: str | None, rig: RigState) -> str:
-    if rig.lost or rig.fault_sentence() is None:
-        text = reason or "the rig is at fault. Reset when its cause is gone"
-        return text if NUMBERED.match(text) else f"Fault: {text}"
-    return f"Fault {rig.fault_sentence()}"
+    """Return number and sentence: of the first fault that latched, else of the one that the reason tells of."""
+    if not rig.lost and rig.fault_sentence() is not None:
+        return f"Fault {rig.fault_sentence()}"
+    text = reason or "the rig is at fault. Reset when its cause is gone"
+    number = next((fault.number for fault in FAULTS if text.startswith(fault.cause)), None)
+    return f"Fault: {text}" if number is None else f"Fault {number}: {text}"

@@ -1,6 +1,5 @@
 """All that a session has for rigs: the connection, who is in control, the commands, and what watches over them."""
 
-import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -31,9 +30,7 @@ CLOSED: tuple[State, ...] = ("homing", "armed", "running", "stopping")
 class RigSession:
     """Simulated sessions have one too; it then does nothing but keep faults."""
 
-    def __init__(
-        self, session: "Session", pool: Pool, files: RigFiles, clock: Callable[[], float] = time.monotonic
-    ) -> None:
+    def __init__(self, session: "Session", pool: Pool, files: RigFiles, clock: Callable[[], float]) -> None:
         self._session = session
         self.state = RigState()
         self.control = ControlCommands(session, clock)
@@ -106,10 +103,10 @@ class RigSession:
             self.good.install(self._session.scenario.tuning)
             self._keep_core(self._session.status.state)
 
-    async def leave(self, key: str) -> None:
+    def leave(self, key: str) -> None:
         """Take control from a page that has closed, and let go of what it held."""
         if self.control.leave(key):
-            await self.commands.let_go()
+            self._session.spawn(self.commands.let_go())
 
     async def close(self) -> None:
         """Disconnect as the server ends."""

@@ -43,7 +43,7 @@ class Begun:
 
 async def begun_scenario(session: "Session", rig: RigFile) -> Begun:
     """Return what a rig begins with. Raises Problem if its actuator is unknown or no tuning fits."""
-    actuator = await asyncio.to_thread(_actuator, session, rig)
+    actuator = await asyncio.to_thread(actuator_of, session, rig)
     candidates, passed_over = await asyncio.to_thread(_candidates, session, rig)
     for candidate in candidates:
         why = unfit_because(candidate.tuning)
@@ -79,7 +79,8 @@ def _candidates(session: "Session", rig: RigFile) -> tuple[list[Candidate], list
     return found, missing
 
 
-def _actuator(session: "Session", rig: RigFile) -> Actuator:
+def actuator_of(session: "Session", rig: RigFile) -> Actuator:
+    """Return the actuator that a rig's file names, the default one if it names none. Raises Problem 404; may wait for a disk."""
     if rig.actuator is None:
         return Actuator()
     actuator: Actuator = session.presets.actuators.get(rig.actuator).content.actuator

@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import time
 import uuid
 from collections.abc import Awaitable, Callable
 from itertools import count
@@ -59,6 +60,7 @@ class Session:
         recordings: Recordings | None = None,
         excerpts: ExcerptStore | None = None,
         rigs: RigFiles | None = None,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.settings, self._pool = settings, pool
         self.design = pool.design
@@ -83,7 +85,7 @@ class Session:
         self.presets = PresetCommands(database, self)
         self.kept = KeptRun(self.presets.presets, self)
         self.history = HistoryCommands(self)
-        self.rig = RigSession(self, pool, rigs or NoRigs())
+        self.rig = RigSession(self, pool, rigs or NoRigs(), clock)
         self.pins = Pins(self, recordings or NoRecordings(), excerpts or ExcerptsInMemory())
         self.trigger = Trigger(self)
         self.commands = Commands(self)

@@ -125,8 +125,9 @@ class SessionBench:
 async def on_bench(folder: Path, scenario: Scenario, **options: Any) -> AsyncIterator[SessionBench]:
     """A session that runs `scenario` from t = 0."""
     database, diary = _opened(folder), options.pop("journal", Diary())
+    kind = options.pop("bench", SessionBench)
     session = Session(Settings(data_dir=folder), Workers(), database, diary, **options)  # type: ignore[arg-type]
-    bench = SessionBench(session, diary)
+    bench: SessionBench = kind(session, diary)
     try:
         await session.runs.load(scenario)
         await asyncio.sleep(0)

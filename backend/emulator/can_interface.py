@@ -1,0 +1,36 @@
+"""An emulated rig on a CAN interface of the system, such as vcan0, through python-can."""
+
+import selectors
+from collections.abc import Callable
+
+import can
+
+Receive = Callable[[int, bytes], None]
+
+
+class CanInterface:
+    """Frames of `can.Bus(interface=..., channel=...)`; the interface must have a file to wait for, as socketcan has."""
+
+    def __init__(self, interface: str, channel: str, selector: selectors.BaseSelector, receive: Receive) -> None:
+        self._bus, self._selector, self._receive = can.Bus(interface=interface, channel=channel), selector, receive
+        selector.register(self._bus.fileno(), selectors.EVENT_READ, self._ready)
+
+    def send(self, can_id: int, data: bytes) -> None:
+        """Send a frame."""
+        self._bus.send(can.Message(arbitration_id=can_id, data=data, is_extended_id=False))
+
+    def send_error(self, flags: int) -> None:
+        """An error frame cannot be sent by an interface that works; the nodes only fall silent."""
+
+    def flush(self) -> None:
+        """Everything has been sent already."""
+
+    def close(self) -> None:
+        """Close the interface."""
+        self._selector.unregister(self._bus.fileno())
+        self._bus.shutdown()
+
+    def _ready(self, _events: int) -> None:
+        message = self._bus.recv(0.0)
+        if message is not None and not message.is_error_frame and not message.is_extended_id:
+            self._receive(message.arbitration_id, bytes(message.data))
