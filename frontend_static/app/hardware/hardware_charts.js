@@ -29,7 +29,7 @@ export function hardwareCharts(choices, rig) {
     },
     {
       id: "hardware-stiffness",
-      name: "Stiffness",
+      name: "Stiffness over time",
       left: { unit: "N·m/rad", smallest: 20 },
       series: [
         { channel: "stiffness_reference", label: "asked", colour: "reference", dash: [5, 4] },

@@ -25,6 +25,7 @@ const RESTARTS = new Set(["scenario", "sequence", "rig"]);
  */
 export class ParameterList {
   constructor(root, desk) {
+    this.root = root;
     this.session = desk.session;
     this.operator = desk.operator;
     const complete = { ...desk, document: desk.session.document, hint: new FieldHint() };
@@ -49,6 +50,7 @@ export class ParameterList {
 
   #enable() {
     this.fieldset.disabled = !this.operator.mayChange;
+    this.root.tabIndex = this.fieldset.disabled ? 0 : -1; // with nothing to focus in it, the column itself is scrolled by keys
     for (const [i, { id }] of PANELS.entries()) if (RESTARTS.has(id)) this.panels[i].root.hidden = this.operator.isOnRig;
   }
 
