@@ -48,6 +48,7 @@ def armed(operator: Operator, **tuning: Any) -> None:
     operator.ask("connect_rig", rig=RIG)
     operator.present = True
     operator.wait_for("connected", "ready")
+    operator.wait(lambda: operator.snapshot["rig"].get("lease_left_s", 0.0) > 0.0, "first renewal")
     if tuning:
         operator.ask("tune", changes=tuning)
     if not operator.snapshot["rig"]["homed"]:
