@@ -21,6 +21,7 @@ from vssea_core.signals.documents import (
 )
 from vssea_core.simulation.closed_loop import ClosedLoop
 from vssea_core.simulation.plan import PreparedRun
+from vssea_core.simulation.state import PENDING, equilibrium_state
 from vssea_core.tick.controller import CLOSED
 
 KNOWN_TO_BOTH = (
@@ -51,7 +52,7 @@ SCENARIOS = {
             "actuator": REALISTIC.actuator.model_copy(
                 update={"motor": REALISTIC.actuator.motor.model_copy(update={"torque_delay_s": 6e-4})}
             ),
-            "disturbances": Disturbances(link=(NoiseDisturbance(rms=0.5),)),
+            "disturbances": Disturbances(link=(NoiseDisturbance(rms=0.5, start_s=0.2),)),
         }
     ),
 }
@@ -64,7 +65,7 @@ def test_a_controller_on_the_simulated_rig_equals_the_simulation_to_the_bit_thro
     bench = RigBench(scenario, NEVER_REACHED)
     for drive in bench.rig._drives.values():
         drive.state = "enabled"  # the simulation's are, from t = 0 on
-    bench.sent = tuple(equilibrium_torques(scenario))
+    bench.sent = tuple(equilibrium_state(scenario)[PENDING : PENDING + 2].tolist())
     loop = ClosedLoop(scenario, PreparedRun(prepare(scenario.tuning, bench.period)))
     expected = np.zeros((SAMPLES, 32))
     parts = []
@@ -93,12 +94,6 @@ def test_a_controller_on_the_simulated_rig_equals_the_simulation_to_the_bit_thro
     assert np.ptp(column(rows, "motor_torque")) > 1.0
     for name, most in (("link_position", 3e-5), ("motor_position", 3e-6), ("stiffness_motor_position", 3e-4)):
         assert np.abs(column(rows, name) - column(expected, name)).max() < most, "measured: to the encoder's count"
-
-
-def equilibrium_torques(scenario: Scenario) -> list[float]:
-    from vssea_core.simulation.state import PENDING, equilibrium_state
-
-    return [float(torque) for torque in equilibrium_state(scenario)[PENDING : PENDING + 2]]
 
 
 def rig(**options: float) -> SimulatedRig:
