@@ -22,6 +22,7 @@ BENCHMARKS = {
         "benchmarks.recordings",
         "an hour's recording: written, opened, drawn, exported, beside the public mcap reader",
     ),
+    "emulator": ("benchmarks.emulator", "the emulated rig: SYNC to the last answer at 500 Hz and 1 kHz, processor time"),
     "loop": ("benchmarks.loop", "the 1 kHz loop for two minutes: lateness, overruns, lost samples, processor time"),
 }
 

@@ -35,8 +35,11 @@ def run(
     where = f"127.0.0.1:{port}" if interface == "socketcand" else channel
     try:
         run_emulator(options, started=lambda _: typer.echo(f"Emulated rig on {interface} {where}  (Ctrl+C ends it)"))
-    except (OSError, ValueError) as error:  # python-can's errors are OSErrors or ValueErrors
-        _refuse(f"{interface} {where} cannot be opened: {error}; is an emulator running there already?")
+    except OSError as error:
+        hint = (
+            "is an emulator running there already" if interface == "socketcand" else "does `ip link` list the channel"
+        )
+        _refuse(f"{interface} {where} cannot be opened: {error}; {hint}?")
 
 
 @emulator.command()
