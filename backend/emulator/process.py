@@ -20,6 +20,7 @@ from backend.emulator.emulator import Emulator
 from backend.emulator.faults import Faults
 from backend.emulator.plant import DEFAULT_STIFFNESS, EmulatedPlant, default_actuator
 from backend.emulator.socketcand import SocketcandServer
+from backend.processes import ask_for_real_time
 from vssea_core.actuator.parameters import Actuator
 from vssea_core.compiled import cache_folder
 
@@ -132,6 +133,7 @@ def run_emulator(options: Options, started: Callable[[int], None], pipe: Connect
     server.selector.register(wake, selectors.EVENT_READ, lambda _events: wake.recv(64))
     gc.collect()
     gc.freeze()
+    ask_for_real_time()  # it stands for devices that have processors of their own
     try:
         server.run()
     finally:
