@@ -60,6 +60,14 @@ def clear(context: typer.Context) -> None:
 
 
 @emulator.command()
+def load(
+    context: typer.Context, torque: Annotated[float, typer.Argument(help="N·m; positive opposes positive motion.")]
+) -> None:
+    """Load the link with a torque that stays; 0 takes it off."""
+    _show(context, {"do": "load", "value": torque})
+
+
+@emulator.command()
 def state(context: typer.Context) -> None:
     """Print the emulated rig as it truly is."""
     _show(context, {"do": "state"})

@@ -168,6 +168,8 @@ def test_the_command_line_sets_shows_and_clears_faults(emulator: EmulatorHandle)
     assert json.loads(text)["faults"] == ["drive_fault"]
     assert json.loads(text)["nodes"]["2"]["last_error"] == 0x5113
     assert command("clear")[0] == 0
+    assert command("load", "0.5")[0] == 0
+    assert command("load", "0")[0] == 0
     assert json.loads(command("state")[1])["faults"] == []
     assert command("watch")[0] == 0
     assert json.loads(command("peaks")[1])["re_enabled"] is False
