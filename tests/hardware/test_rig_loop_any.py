@@ -16,7 +16,7 @@ from backend.rigs.rig import AXES
 from backend.telemetry.beats import LEASE, WEB
 from tests.hardware.rig_loop_bench import FILE, RigBench, prepared
 from vssea_core.control.tuning import StateFeedback
-from vssea_core.signals.documents import ConstantStiffness, MoveReference, SineReference, StepReference
+from vssea_core.signals.documents import ConstantStiffness, MoveReference, Reference, SineReference, StepReference
 
 FAST = FILE.model_copy(update={"homing": FILE.homing.model_copy(update={"speed": 300.0, "still_s": 0.05})})
 SETTINGS = settings(
@@ -43,7 +43,7 @@ class AnySequence(RuleBasedStateMachine):
     def __init__(self) -> None:
         super().__init__()
         self.bench = RigBench(file=FAST)
-        self.may_be_on = {axis: False for axis in AXES}  # armed or homed since the last stop or fault
+        self.may_be_on = dict.fromkeys(AXES, False)  # armed or homed since the last stop or fault
         self.state = self.bench.state
         self.tuning_id = 1
 
@@ -55,7 +55,10 @@ class AnySequence(RuleBasedStateMachine):
         self.bench.connect()
         if how != "connected":
             self.ask(messages.Home())
-            self.turns(700)
+            while self.state == "homing":
+                self.turn()
+            assert self.state == "ready"
+            self.turns(50)
         if how in ("armed", "running"):
             self.ask(messages.Arm())
             self.turns(30)
@@ -104,9 +107,8 @@ class AnySequence(RuleBasedStateMachine):
         for axis in AXES:
             if bench.rig._drives[axis].state == "enabled":
                 assert self.may_be_on[axis], f"{axis} is enabled in {self.state}"
-            elif bench.rig._drives[axis].state in ("disabled", "fault") and ("arm", axis) not in bench.rig.orders:
-                if self.state not in ("ready", "homing"):  # where it is just about to be enabled
-                    self.may_be_on[axis] = False
+            elif bench.rig._drives[axis].state in ("disabled", "fault") and self.state not in ("ready", "homing"):
+                self.may_be_on[axis] = False  # in those two it may be on its way
         if self.state in ("armed", "running"):
             assert before in ("armed", "running", "ready"), f"{before} to {self.state}"
             assert not bench.report().faults
@@ -142,7 +144,7 @@ class AnySequence(RuleBasedStateMachine):
         self.ask(messages.GoTo(position, speed))
 
     @rule(reference=references)
-    def set_reference(self, reference: messages.Reference) -> None:
+    def set_reference(self, reference: Reference) -> None:
         self.ask(messages.SetReference(reference))
 
     @rule(stiffness=st.floats(25.0, 900.0))

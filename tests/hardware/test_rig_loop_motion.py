@@ -11,7 +11,6 @@ from tests.hardware.rig_loop_bench import RigBench, T, prepared
 from vssea_core.control.tuning import StateFeedback
 from vssea_core.signals.documents import ConstantStiffness, MoveReference, SineReference, StepReference
 
-
 NAN = float("nan")
 
 
