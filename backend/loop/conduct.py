@@ -4,7 +4,6 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from vssea_core.tick import controller as law
 
 from backend.loop.arming import BLEND_S, ENABLE_S, Situation, reasons
 from backend.loop.connected_rig import ConnectedRig
@@ -37,6 +36,7 @@ from backend.rigs.faults import (
 )
 from backend.rigs.rig import AXES, Axis
 from vssea_core.channels import INDEX
+from vssea_core.tick import controller as law
 
 LOST: dict[Fault, tuple[Axis, ...]] = {
     MOTOR_SILENT: ("motor",),
