@@ -1,11 +1,12 @@
 """An emulated rig on a CAN interface of the system, such as vcan0, through python-can."""
 
 import selectors
+import time
 from collections.abc import Callable
 
 import can
 
-Receive = Callable[[int, bytes], None]
+Receive = Callable[[int, bytes, float], None]
 
 
 class CanInterface:
@@ -33,4 +34,5 @@ class CanInterface:
     def _ready(self, _events: int) -> None:
         message = self._bus.recv(0.0)
         if message is not None and not message.is_error_frame and not message.is_extended_id:
-            self._receive(message.arbitration_id, bytes(message.data))
+            age = min(0.1, max(0.0, time.time() - message.timestamp))
+            self._receive(message.arbitration_id, bytes(message.data), time.monotonic() - age)

@@ -18,7 +18,7 @@ from backend.emulator.cia402 import (
 from backend.emulator.drive_objects import COUNTS_PER_TURN, CYCLIC_TORQUE, drive_objects
 from backend.emulator.encoder import Encoder
 from backend.emulator.network import EmulatedNetwork
-from backend.emulator.node import EmulatedNode
+from backend.emulator.node import COMMUNICATION_ERROR, EXCHANGE_ENDED, EmulatedNode
 from backend.emulator.plant import AXES, MOTOR, EmulatedPlant
 
 EFFICIENCY = 0.7  # of the gear
@@ -48,7 +48,7 @@ class EmulatedDrive(EmulatedNode):
         zero = 0.0 if absolute else plant.position(axis) - shown_at_start
         self.encoder = Encoder(COUNTS_PER_TURN * ratio, zero)
         self.state = State.NOT_READY
-        self.fault_stands = False
+        self.cause: tuple[int, int] | None = None  # of a fault: error code and bits of the error register
         self.times_enabled = self.times_left = 0
         self._controlword = 0
         self._after_stop: State | None = None  # where a ramp leads
@@ -66,6 +66,8 @@ class EmulatedDrive(EmulatedNode):
         """Begin switched off, without a mode."""
         self._controlword, self._after_stop, self._halted = 0, None, False
         self._go(State.DISABLED)
+        if self.cause is not None:
+            self.fail(*self.cause)
 
     def powered_off(self) -> None:
         """Let go of the motor, and of the place where it was, unless the encoder is absolute."""
@@ -110,7 +112,7 @@ class EmulatedDrive(EmulatedNode):
 
     def _control(self, controlword: int) -> None:
         previous, self._controlword = self._controlword, controlword
-        after, resets = controlled(self.state, controlword, previous, self.values[0x605A, 0], self.fault_stands)
+        after, resets = controlled(self.state, controlword, previous, self.values[0x605A, 0], self.cause is not None)
         if resets:
             self.values[0x603F, 0] = 0
             self.emergency(0)
@@ -144,6 +146,8 @@ class EmulatedDrive(EmulatedNode):
 
     def fail(self, code: int, register: int) -> None:
         """Have an error: emergency, reaction by option code 0x605E, then the state fault."""
+        if self.is_restarting:
+            return
         self.values[0x603F, 0] = code
         self.emergency(code, register)
         self._react()
@@ -164,12 +168,19 @@ class EmulatedDrive(EmulatedNode):
         if self.state not in POWERED or option == 0:
             return
         if option == 1:
+            if code == EXCHANGE_ENDED:  # the others have been told
+                self.emergency(code, COMMUNICATION_ERROR)
             self.values[0x603F, 0] = code
             self._react()
         elif option == 2 or self.state is State.SWITCHED_ON:
             self._go(State.DISABLED)
         elif self.state is State.ENABLED:
             self._quick_stop()
+
+    def recovered(self) -> None:
+        """Note that the host is heard again; a fault stays an error."""
+        if self.state not in (State.REACTION, State.FAULT):
+            super().recovered()
 
     def watch_time(self) -> None:
         """Go where a ramp leads once the axis stands still, or after all patience."""

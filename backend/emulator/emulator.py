@@ -37,11 +37,12 @@ class Emulator:
         self._plant_time = now
         self._next_turn = now
         self.syncs = 0
+        self.nodes: tuple[EmulatedNode, ...] = ()  # while they are switched on
         self.motor = EmulatedDrive(MOTOR_NODE, MOTOR, self.plant, self.network)
         self.stiffness = EmulatedDrive(STIFFNESS_NODE, STIFFNESS, self.plant, self.network, stiffness_offset)
         self.link = EmulatedLinkEncoder(LINK_NODE, self.plant, self.network)
         self.drives = (self.motor, self.stiffness)
-        self.nodes: tuple[EmulatedNode, ...] = (self.motor, self.stiffness, self.link)
+        self.nodes = (self.motor, self.stiffness, self.link)
         self.network.subscribe(SYNC, self._sync)
         self.watch()
 
@@ -50,8 +51,8 @@ class Emulator:
         self.network.now = self._plant_time = self._next_turn = now
 
     def receive(self, can_id: int, data: bytes, now: float) -> None:
-        """Take a frame of the host."""
-        self._advance(now)
+        """Take a frame of the host that arrived at `now`."""
+        self.advance(now)
         self.wire.into(can_id, data)
 
     def turn(self, now: float) -> None:
@@ -60,7 +61,7 @@ class Emulator:
             self.wire.turn(now)
             return
         self._next_turn = now + TURN_S
-        self._advance(now)
+        self.advance(now)
         self.network.turn(now)
         for node in self.nodes:
             node.turn()
@@ -106,19 +107,22 @@ class Emulator:
             "motor_torque": self.plant.given(MOTOR),
             "stiffness_torque": self.plant.given(STIFFNESS),
             "states": self.states(),
+            "statuswords": {AXES[drive.axis]: drive.statusword() for drive in self.drives},
             "nodes": nodes,
             "syncs": self.syncs,
             "skipped_s": self.plant.skipped_s,
         }
 
-    def _advance(self, now: float) -> None:
+    def advance(self, now: float) -> None:
+        """Let the plant come to `now`."""
+        now = max(now, self._plant_time)
         self.network.now = now
         self.plant.advance(now - self._plant_time)
-        self._plant_time = max(now, self._plant_time)
+        self._plant_time = now
         if not self.plant.holds:
             self.plant.holds = True
             for drive in self.drives:
-                drive.fail(RANGE, register=0x81)
+                drive.fail(RANGE, register=0x80)
 
     def _from_node(self, can_id: int, data: bytes) -> None:
         if can_id > HEARTBEATS:
@@ -132,7 +136,7 @@ class Emulator:
             self.network.notify(can_id, bytearray(data), self.network.now)
 
     def _heard(self, can_id: int) -> None:
-        for node in getattr(self, "nodes", ()):  # none while the first ones are switched on
+        for node in self.nodes:
             node.heard(can_id & 0x7F)
 
     def _sync(self, _can_id: int, _data: bytearray, _timestamp: float) -> None:

@@ -25,7 +25,7 @@ FAULTS = {
     "node_reboot": "a node (1) restarts and has lost its configuration",
     "torque_saturated": "share of its peak torque that a drive, of the node (1), gives at most (0.05)",
     "wrong_inertia": "factor on the inertias of motor and link, or of the node's axis only (3)",
-    "end_stop": "N·m that push the stiffness motor towards its soft end stop, or the stiff one if negative (1.5)",
+    "end_stop": "N·m that push the stiffness motor towards its soft end stop, or the stiff one if negative (1)",
 }
 """Every fault and what its value means, with the value or node that is taken if none is given."""
 
@@ -60,7 +60,7 @@ class Faults:
         emulator.link.encoder.mend()
         for drive in emulator.drives:
             drive.encoder.mend()
-            drive.fault_stands = False
+            drive.cause = None
             drive.share = 1.0
             drive.limit()
         self.standing.clear()
@@ -105,8 +105,8 @@ class Faults:
         self._fail(self._drive(node), OVER_TEMPERATURE)
 
     def _fail(self, drive: EmulatedDrive, code: int) -> None:
-        drive.fault_stands = True
-        drive.fail(code, REGISTER.get(code >> 12, 0))
+        drive.cause = code, REGISTER.get(code >> 12, 0)
+        drive.fail(*drive.cause)
 
     def _bus_off(self, _value: float | None, _node: int | None) -> None:
         self._send_error(BUS_OFF_FLAG)
@@ -137,7 +137,7 @@ class Faults:
         plant.reform()
 
     def _end_stop(self, value: float | None, _node: int | None) -> None:
-        self._emulator.plant.push(_within(value, 1.5, -20.0, 20.0, "N·m"))
+        self._emulator.plant.push(_within(value, 1.0, -20.0, 20.0, "N·m"))
 
 
 def _share(value: float | None, usual: float) -> float:

@@ -31,6 +31,7 @@ class EmulatedNode:
         self.entries = {(entry.index, entry.sub): entry for entry in entries}
         self.values: dict[tuple[int, int], Any] = {}
         self._heard: dict[int, float] = {}  # by subindex of 0x1016: until when the next heartbeat has to be here
+        self._lost: set[int] = set()  # subindices of 0x1016 whose heartbeat is missing
         self._back_at: float | None = None  # while it restarts
         self.local = canopen.LocalNode(number, dictionary(entries))
         self.local.add_read_callback(self._on_read)
@@ -54,6 +55,11 @@ class EmulatedNode:
     def nmt_state(self) -> str:
         """The node's NMT state in words."""
         return "RESTARTING" if self._back_at is not None else self.local.nmt.state
+
+    @property
+    def is_restarting(self) -> bool:
+        """Whether the node is without power."""
+        return self._back_at is not None
 
     @property
     def is_operational(self) -> bool:
@@ -80,6 +86,13 @@ class EmulatedNode:
 
     def switched_on(self) -> None:
         """Begin with the dictionary's default values."""
+
+    def recovered(self) -> None:
+        """Note that the host is heard again."""
+        self.emergency(NO_ERROR)
+
+    def powered_off(self) -> None:
+        """Let go of what needs power."""
 
     def watch_time(self) -> None:
         """Do what only time calls for."""
@@ -114,6 +127,7 @@ class EmulatedNode:
         for sub, due in tuple(self._heard.items()):
             if self.now >= due:
                 del self._heard[sub]
+                self._lost.add(sub)
                 self._heartbeat_lost()
         if self.is_operational:
             for pdo in self.receives:
@@ -130,6 +144,9 @@ class EmulatedNode:
             value = self.values[0x1016, sub]
             if value and (value >> 16) & 0x7F == producer and value & 0xFFFF:
                 self._heard[sub] = self.now + 1e-3 * (value & 0xFFFF)
+                if sub in self._lost:
+                    self._lost.discard(sub)
+                    self.recovered()
 
     def _heartbeat_lost(self) -> None:
         self.emergency(HEARTBEAT_LOST, COMMUNICATION_ERROR)
@@ -149,7 +166,7 @@ class EmulatedNode:
                 self.values[0x1003, sub] = self.values[0x1003, sub - 1]
             self.values[0x1003, 1] = code
             self.values[0x1003, 0] = min(8, self.values[0x1003, 0] + 1)
-        if not self.value(0x1014) & UNUSED and self._back_at is None:
+        if not self.value(0x1014) & UNUSED and self.nmt_state in ("PRE-OPERATIONAL", "OPERATIONAL"):
             self.local.emcy.send(code, self.values[0x1001, 0])
 
     # SDO -------------------------------------------------------------------------------------------------------------
@@ -211,17 +228,15 @@ class EmulatedNode:
         self._back_at = self.now + BOOT_S
         self.powered_off()
 
-    def powered_off(self) -> None:
-        """Let go of what needs power."""
-
     def _boot(self) -> None:
         self._back_at = None
         self._heard.clear()
+        self._lost.clear()
         self.values = {key: entry.default for key, entry in self.entries.items()}
         self.local.data_store.clear()
         self.local.sdo._index = self.local.sdo._subindex = 0  # an abort before any request names an object
         for pdo in (*self.receives, *self.transmits):
             pdo.configure()
-        self.switched_on()
         self.local.nmt.state = "INITIALISING"
         self.local.nmt.state = "PRE-OPERATIONAL"
+        self.switched_on()

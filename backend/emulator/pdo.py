@@ -90,7 +90,8 @@ class ReceivePdo(_Pdo):
         super().__init__(node, number, 0x1400)
         self._pending: tuple[int, ...] | None = None
         self._due = 0.0  # 0 = no deadline runs
-        self._complained = False
+        self._complaint = 0  # what was last wrong, told once
+        self._missed = False
         self._subscribed = 0
 
     def configure(self) -> None:
@@ -106,18 +107,21 @@ class ReceivePdo(_Pdo):
 
     def forget(self) -> None:
         """Drop what has not been taken over, and the deadline."""
-        self._pending, self._due, self._complained = None, 0.0, False
+        self._pending, self._due, self._complaint, self._missed = None, 0.0, 0, False
 
     def receive(self, _can_id: int, data: bytearray, _timestamp: float) -> None:
         """Take a frame."""
         if not self.node.is_operational:
             return
         wrong = LENGTH_WRONG if len(data) < self.layout.size else LENGTH_LONG if len(data) > self.layout.size else 0
-        if wrong and not self._complained:
+        if wrong and wrong != self._complaint:
             self.node.emergency(wrong, register=0x10)
-        self._complained = bool(wrong)
+        self._complaint = wrong
         if wrong == LENGTH_WRONG:
             return
+        if self._missed:
+            self._missed = False
+            self.node.recovered()
         if self.timer_s:
             self._due = self.node.now + self.timer_s
         values = self.layout.unpack_from(data)
@@ -136,7 +140,7 @@ class ReceivePdo(_Pdo):
         """Return once whether the deadline has passed."""
         if not self._due or self.node.now < self._due:
             return False
-        self._due = 0.0
+        self._due, self._missed = 0.0, True
         return True
 
 

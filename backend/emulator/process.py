@@ -1,6 +1,7 @@
 """The emulator's process: one loop over sockets and deadlines."""
 
 import gc
+import logging
 import os
 import selectors
 import signal
@@ -75,11 +76,11 @@ class Server:
         """The bus's port; the control port is the next."""
         return self.control.port - 1
 
-    def _receive(self, can_id: int, data: bytes) -> None:
-        self.emulator.receive(can_id, data, time.monotonic())
+    def _receive(self, can_id: int, data: bytes, arrived: float) -> None:
+        self.emulator.receive(can_id, data, arrived)
 
     def _answer(self, request: dict[str, Any]) -> dict[str, Any]:
-        self.emulator.turn(time.monotonic())
+        self.emulator.advance(time.monotonic())
         return answer(self.emulator, self.faults, request)
 
     def run(self) -> None:
@@ -118,6 +119,7 @@ def run_emulator(options: Options, started: Callable[[int], None], pipe: Connect
         server.selector.register(pipe, selectors.EVENT_READ, server.end)
     else:
         signal.signal(signal.SIGINT, server.end)
+    logging.getLogger("canopen").setLevel(logging.CRITICAL)  # what a host does wrong is the host's to tell
     started(server.port)
     signal.signal(signal.SIGTERM, server.end)
     wake, woken = os.pipe()

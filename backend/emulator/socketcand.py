@@ -2,14 +2,21 @@
 
 import selectors
 import socket
+import struct
+import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 
 HELD_BACK_S = 0.05
 """How long a client gets no frames after its handshake: its last answer has to arrive alone."""
 MOST_WAITING = 1 << 20  # bytes; a client that reads so little is let go
 QUICK_ACK = getattr(socket, "TCP_QUICKACK", None)
-Receive = Callable[[int, bytes], None]
+STAMPS = getattr(socket, "SO_TIMESTAMPNS", 35 if sys.platform == "linux" else None)
+"""Asks the kernel when data arrived, so that a drive latches at SYNC however late this process is woken."""
+STAMP = struct.Struct("qq")
+OLDEST_S = 0.1
+Receive = Callable[[int, bytes, float], None]
 
 
 def frame_text(can_id: int, data: bytes) -> bytes:
@@ -39,14 +46,30 @@ class Client:
         self.connection = connection
         self.raw = False
         self.frames_from = 0.0
+        self.early = bytearray()  # frames until then
         self.waiting = bytearray()
+        self.arrived = 0.0  # when the newest data came, by time.monotonic
         self._text = ""
+        self._stamped = False
+        if STAMPS is not None:
+            with suppress(OSError):
+                connection.setsockopt(socket.SOL_SOCKET, STAMPS, 1)
+                self._stamped = True
 
     def lines(self) -> Iterator[list[str]]:
         """Yield the words of each message that has come. Raises ConnectionError at the end, OSError."""
-        data = self.connection.recv(65536)
+        stamps: list[tuple[int, int, bytes]] = []
+        if self._stamped:
+            data, stamps, _, _ = self.connection.recvmsg(65536, 64)
+        else:
+            data = self.connection.recv(65536)
         if not data:
             raise ConnectionError
+        self.arrived = time.monotonic()
+        for _, kind, content in stamps:
+            if kind == STAMPS and len(content) == STAMP.size:
+                seconds, nanoseconds = STAMP.unpack(content)
+                self.arrived -= min(OLDEST_S, max(0.0, time.time() - seconds - 1e-9 * nanoseconds))
         if QUICK_ACK is not None:  # small writes of a client without TCP_NODELAY wait for the acknowledgement
             self.connection.setsockopt(socket.IPPROTO_TCP, QUICK_ACK, 1)
         *messages, self._text = (self._text + data.decode("ascii", "replace")).split(">")
@@ -65,6 +88,7 @@ class SocketcandServer:
         self.port: int = self._listening.getsockname()[1]
         self._clients: list[Client] = []
         self._outgoing = bytearray()
+        self._held: set[Client] = set()  # shortly after their handshake
         selector.register(self._listening, selectors.EVENT_READ, self._accept)
 
     def send(self, can_id: int, data: bytes) -> None:
@@ -78,12 +102,10 @@ class SocketcandServer:
 
     def flush(self) -> None:
         """Write what was sent since the last time."""
-        if not self._outgoing:
+        if not self._outgoing and not self._held:
             return
-        now = time.monotonic()
         for client in tuple(self._clients):
-            if client.raw and now >= client.frames_from:
-                self._write(client, self._outgoing)
+            self._show(client, self._outgoing)
         self._outgoing.clear()
 
     def close(self) -> None:
@@ -121,25 +143,30 @@ class SocketcandServer:
                 frame = parsed_send(words)
                 if frame is not None:
                     client.frames_from = 0.0
-                    self._pass_on(client, frame)
-                    self._receive(*frame)
+                    for other in tuple(self._clients):
+                        if other is not client:
+                            self._show(other, frame_text(*frame))
+                    self._receive(*frame, client.arrived)
             case ["open", _]:
                 self._write(client, b"< ok >")
             case ["rawmode"]:
                 client.raw, client.frames_from = True, time.monotonic() + HELD_BACK_S
+                self._held.add(client)
                 self._write(client, b"< ok >")
             case ["echo"]:
                 self._write(client, b"< echo >")
             case _ if not client.raw:
                 self._write(client, b"< error unknown command >")
 
-    def _pass_on(self, sender: Client, frame: tuple[int, bytes]) -> None:
-        if len(self._clients) < 2:
-            return
-        text, now = frame_text(*frame), time.monotonic()
-        for client in tuple(self._clients):
-            if client is not sender and client.raw and now >= client.frames_from:
-                self._write(client, text)
+    def _show(self, client: Client, text: bytes | bytearray) -> None:
+        if client in self._held:
+            client.early += text
+            if time.monotonic() < client.frames_from:
+                return
+            self._held.discard(client)
+            text = client.early
+        if client.raw and text:
+            self._write(client, text)
 
     def _write(self, client: Client, data: bytes | bytearray) -> None:
         if client not in self._clients:
@@ -163,5 +190,6 @@ class SocketcandServer:
     def _let_go(self, client: Client) -> None:
         if client in self._clients:
             self._clients.remove(client)
+            self._held.discard(client)
             self._selector.unregister(client.connection)
             client.connection.close()

@@ -30,6 +30,7 @@ from vssea_core.tick.hardware import (
     HEAT_AT,
     PLACES_AT,
     READING,
+    SAG_AT,
     SEEN_AT,
     SLEWED_AT,
     SPEEDS_AT,
@@ -154,6 +155,7 @@ class Controller:
         self._held = False
         self._slew = self._slewing(self.time_s)
         self._slewed[:2] = stiffness_motor
+        self._state[SAG_AT] = motor - link
 
     def install(self, tuning: Tuning, prepared: Numbers, tuning_id: int) -> None:
         """Use another tuning from the next tick on; the observer's last period stays with the old one.

@@ -48,7 +48,8 @@ SEEN_AT = SENT_AT + 4  # for monitors: deflection, spring torque, stiffness, dem
 FINITE_AT = SEEN_AT + 7  # 0 after a tick in which something was no number
 CLIPPED_AT = FINITE_AT + 1  # 1 where the commanded stiffness lies outside the rig's range
 MOVED_AT = CLIPPED_AT + 1  # 1 once there are last positions
-STATE_SIZE = MOVED_AT + 1
+SAG_AT = MOVED_AT + 1  # slow part of the deflection
+STATE_SIZE = SAG_AT + 1
 
 WIDEST = 1.2  # the spring's law is evaluated up to this factor outside the end stops
 
@@ -97,7 +98,10 @@ def tick(
     if not measured:
         theta_l, theta_e, theta_ms = state[PLACES_AT], state[PLACES_AT + 1], state[PLACES_AT + 2]
     keep, gain = bounds.difference_keep, bounds.difference_gain
-    if state[MOVED_AT] != 0.0:
+    if state[MOVED_AT] == 0.0:
+        state[SAG_AT] = theta_e - theta_l
+    else:
+        state[SAG_AT] += bounds.sag_gain * (theta_e - theta_l - state[SAG_AT])
         state[SPEEDS_AT] = keep * state[SPEEDS_AT] + gain * (theta_l - state[PLACES_AT])
         state[SPEEDS_AT + 1] = keep * state[SPEEDS_AT + 1] + gain * (theta_e - state[PLACES_AT + 1])
         state[SPEEDS_AT + 2] = keep * state[SPEEDS_AT + 2] + gain * (theta_ms - state[PLACES_AT + 2])
@@ -115,7 +119,10 @@ def tick(
     deflection = theta_e - theta_l
     spring = leaf(deflection, place)
     tau_s, k = bounds.spring_constant * spring.torque, bounds.spring_constant * spring.stiffness
-    motion = Motion(theta_l, theta_e, place, omega_l, omega_e, omega_ms, tau_s, bounds.spring_constant * spring.back)
+    motion = Motion(
+        theta_l, theta_e, place, omega_l, omega_e, omega_ms,
+        tau_s, bounds.spring_constant * spring.back, k, state[SAG_AT],
+    )  # fmt: skip
     demanded, twisting, bits, stiffness_bits = 0.0, 0.0, 0, 0
     torque = stiffness_torque = 0.0
     available = min(bounds.motor_torque, drives.peak_torque)

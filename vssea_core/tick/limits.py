@@ -24,6 +24,8 @@ FASTEST_APPROACH = 40.0  # 1/s; rate at which speed nears what a border allows
 FASTEST_STIFFNESS_APPROACH = 100.0
 STIFFNESS_BRAKING_SHARE = 0.5  # share of the stiffness motor's torque that its braking counts on
 STIFFNESS_SLACK = 1.0 / 500.0  # share of the stiffness range by which the barrier stands outside what may be commanded
+SAG_BANDWIDTH = 4.0  # rad/s; what of the deflection is slower counts as the sag of a load
+LEAST_STIFFNESS = 1.0  # N m/rad
 DIFFERENCE_BANDWIDTH = 500.0  # rad/s; filter of the encoder differences
 
 
@@ -58,6 +60,7 @@ class Bounds(NamedTuple):
     theta_ms_stiff: float
     theta_ms_soft: float
     stiffness_braking: float  # rad/s^2
+    link_inertia: float
     motor_inertia: float
     stiffness_inertia: float
     spring_constant: float
@@ -66,6 +69,7 @@ class Bounds(NamedTuple):
     brake: float  # damping of the model-free brake [N m s/rad]
     difference_keep: float
     difference_gain: float
+    sag_gain: float
     stop_stiff: float  # the mechanism's own end stops [rad]
     stop_soft: float
 
@@ -92,6 +96,7 @@ def bounds_row(limits: RigLimits, actuator: Actuator, sample_time_s: float) -> N
             limits.theta_ms_stiff - slack,
             limits.theta_ms_soft + slack,
             STIFFNESS_BRAKING_SHARE * limits.stiffness_torque / mechanism.inertia,
+            actuator.link.inertia,
             motor.inertia,
             mechanism.inertia,
             mechanism.spring_constant,
@@ -100,6 +105,7 @@ def bounds_row(limits: RigLimits, actuator: Actuator, sample_time_s: float) -> N
             min(motor.inertia / BRAKE_TIME_S, BRAKE_SHARE * limits.motor_torque / limits.motor_speed),
             keep,
             (1.0 - keep) / sample_time_s,
+            1.0 - math.exp(-SAG_BANDWIDTH * sample_time_s),
             stiffness_motor_position(mechanism.stiffest, mechanism.spring_constant),
             stiffness_motor_position(mechanism.softest, mechanism.spring_constant),
         )
@@ -117,6 +123,8 @@ class Motion(NamedTuple):
     omega_ms: float
     spring_torque: float
     back_torque: float
+    stiffness: float  # N m/rad
+    sag: float  # slow part of the deflection [rad], which a load on the link makes
 
 
 @inlined
@@ -142,17 +150,26 @@ def highest_acceleration(approach, distance, braking, omega, closing):
 
 
 @inlined
-def upward_bound(bounds, theta_l, theta_e, omega_l, omega_e, link_high, tau_s):
+def swing(bounds, motion):
+    """Return how far [rad] the link may yet swing from where the motor holds it: the amplitude of its free oscillation.
+
+    A border for the link's own position would drive that oscillation; its amplitude hardly changes during a swing.
+    """
+    offset = motion.theta_e - motion.theta_l - motion.sag
+    rate = motion.omega_e - motion.omega_l
+    per_frequency = bounds.link_inertia / max(motion.stiffness, LEAST_STIFFNESS)
+    return math.sqrt(offset * offset + rate * rate * per_frequency) + bounds.braking * per_frequency
+
+
+@inlined
+def upward_bound(bounds, omega, left, deflection_left, link_omega, tau_s):
     """Return the highest motor torque [N m] that speed, position and deflection allow upwards, and the bit of the narrowest."""
     rate = bounds.approach
-    highest, bit = rate * (bounds.motor_speed - omega_e), RIG_SPEED
-    by_link = highest_acceleration(rate, link_high - theta_l, bounds.braking, omega_e, omega_l)
-    by_motor = highest_acceleration(rate, link_high - theta_e, bounds.braking, omega_e, omega_e)
-    by_place = min(by_link, by_motor)
+    highest, bit = rate * (bounds.motor_speed - omega), RIG_SPEED
+    by_place = highest_acceleration(rate, left, bounds.braking, omega, omega)
     if by_place < highest:
         highest, bit = by_place, RIG_POSITION
-    left = bounds.deflection - (theta_e - theta_l)
-    by_deflection = rate * (omega_l + 0.5 * rate * left - omega_e)
+    by_deflection = rate * (link_omega + 0.5 * rate * deflection_left - omega)
     if by_deflection < highest:
         highest, bit = by_deflection, RIG_DEFLECTION
     return tau_s + bounds.motor_inertia * highest, bit
@@ -162,10 +179,11 @@ def upward_bound(bounds, theta_l, theta_e, omega_l, omega_e, link_high, tau_s):
 def within_barriers(bounds, motion, torque):
     """Return the motor torque [N m] within the barriers, and the bits of what held it back."""
     m = motion
-    high, high_bit = upward_bound(bounds, m.theta_l, m.theta_e, m.omega_l, m.omega_e, bounds.link_high, m.spring_torque)
-    low, low_bit = upward_bound(
-        bounds, -m.theta_l, -m.theta_e, -m.omega_l, -m.omega_e, -bounds.link_low, -m.spring_torque
-    )
+    swings, deflection = swing(bounds, m), m.theta_e - m.theta_l
+    left = bounds.link_high - m.theta_e - max(-m.sag, 0.0) - swings
+    high, high_bit = upward_bound(bounds, m.omega_e, left, bounds.deflection - deflection, m.omega_l, m.spring_torque)
+    left = m.theta_e - max(m.sag, 0.0) - swings - bounds.link_low
+    low, low_bit = upward_bound(bounds, -m.omega_e, left, bounds.deflection + deflection, -m.omega_l, -m.spring_torque)
     bits = 0
     if torque > high:
         torque, bits = high, high_bit

@@ -45,8 +45,8 @@ export class LiveSession extends EventTarget {
     this.connection.open();
   }
 
-  command(name, args) {
-    return this.connection.command(name, args);
+  command(name, args, limitMs) {
+    return this.connection.command(name, args, limitMs);
   }
 
   /** Add a line to the log that only this page knows of, such as a refused command. */
