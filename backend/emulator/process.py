@@ -1,12 +1,10 @@
 """The emulator's process: one loop over sockets and deadlines."""
 
-import contextlib
 import gc
 import logging
 import os
 import selectors
 import signal
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,12 +20,11 @@ from backend.emulator.emulator import Emulator
 from backend.emulator.faults import Faults
 from backend.emulator.plant import DEFAULT_STIFFNESS, EmulatedPlant, default_actuator
 from backend.emulator.socketcand import SocketcandServer
+from backend.processes import ask_for_real_time
 from vssea_core.actuator.parameters import Actuator
 from vssea_core.compiled import cache_folder
 
 PORT = 29536
-PRIORITY = 10
-"""Below that of a control loop."""
 TRIES = 20
 """Pairs of free ports that are looked for where any will do."""
 
@@ -132,7 +129,7 @@ def run_emulator(options: Options, started: Callable[[int], None], pipe: Connect
     server.selector.register(wake, selectors.EVENT_READ, lambda _events: os.read(wake, 64))
     gc.collect()
     gc.freeze()
-    _ask_for_real_time()
+    ask_for_real_time()  # it stands for devices that have processors of their own
     try:
         server.run()
     finally:
@@ -140,13 +137,6 @@ def run_emulator(options: Options, started: Callable[[int], None], pipe: Connect
         server.close()
         os.close(wake)
         os.close(woken)
-
-
-def _ask_for_real_time() -> None:
-    """Be scheduled before a busy browser, as true drives are; it needs privileges, and without them load may delay answers."""
-    if sys.platform.startswith("linux"):
-        with contextlib.suppress(OSError):
-            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
 
 
 def run_emulator_with(options: dict[str, Any], pipe: Connection) -> None:

@@ -46,8 +46,8 @@ class Axes:
                 self._tell(self._rig.reset, axis)
 
     def enabled(self, *axes: Axis) -> bool:
-        """Return whether all of `axes` are enabled and are meant to be."""
-        return all(self._wanted[axis] and self.status[axis].state == "enabled" for axis in axes)
+        """Return whether all of `axes` are meant to be enabled and have come to be so, as far as is known."""
+        return all(self._on[axis] for axis in axes)
 
     def on(self, axis: Axis) -> bool:
         """Return whether an axis may still give a torque: it is on its way to enabled, enabled or stopping."""
@@ -79,7 +79,7 @@ class Axes:
                 self._wanted[axis] = self._on[axis] = False
             elif self._wanted[axis] and status.state == "enabled":
                 self._on[axis] = True
-            elif self._on[axis]:
+            elif self._on[axis] and status.state != "unknown":
                 found.append((LEFT_ENABLED, f"{NAMES[axis]}: {status.words}"))
                 self._wanted[axis] = self._on[axis] = False
         return found

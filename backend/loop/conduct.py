@@ -4,7 +4,6 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from vssea_core.tick import controller as law
 
 from backend.loop.arming import BLEND_S, ENABLE_S, Situation, reasons
 from backend.loop.connected_rig import ConnectedRig
@@ -14,7 +13,7 @@ from backend.loop.latch import Latch
 from backend.loop.messages import Changed, Done, Refused, Report, State
 from backend.loop.monitors import Monitors, Seen
 from backend.loop.motion import Motion
-from backend.loop.rig_states import CLOSED, WATCHED
+from backend.loop.rig_states import CLOSED, DRIVEN, WATCHED
 from backend.loop.stopping import Moment, Release, Stopping
 from backend.loop.watchdogs import Watchdogs
 from backend.rigs.faults import (
@@ -37,6 +36,7 @@ from backend.rigs.faults import (
 )
 from backend.rigs.rig import AXES, Axis
 from vssea_core.channels import INDEX
+from vssea_core.tick import controller as law
 
 LOST: dict[Fault, tuple[Axis, ...]] = {
     MOTOR_SILENT: ("motor",),
@@ -205,7 +205,7 @@ class Conduct:
             found.append((silent, ""))
         found += self.monitors.look(self._seen(now))
         for fault, detail in found:
-            if fault not in ONLY_DRIVEN or on.axes.any_on or fault in self.latch:
+            if fault not in ONLY_DRIVEN or self.state in DRIVEN or fault in self.latch:
                 self._note(fault, detail)
         if oldest(on.measured) >= STOPS and (self.state in WATCHED or self._arming is not None):
             self.stop(stop_sentence(on.measured))

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from vssea_core.tick.controller import Controller, RigLimits
 
 from backend.loop.axes import Axes, Found
 from backend.loop.freshness import STOPS, oldest
@@ -18,6 +17,7 @@ from vssea_core.actuator.spring import stiffness_motor_position
 from vssea_core.channels import INDEX
 from vssea_core.control.packing import law_of
 from vssea_core.control.tuning import Tuning
+from vssea_core.tick.controller import Controller, RigLimits
 
 NOTHING_YET = Measured(0.0, 0.0, 0.0, 1, 1, 1, 0.0, 0.0, 0.0, 0.0)
 FARTHEST = 6.3  # rad; a reference can be no farther, and no rig can be armed there

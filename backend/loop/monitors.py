@@ -3,6 +3,7 @@
 Each check needs no more than what was measured and what the observer says; those that can be a flicker have to last.
 """
 
+import math
 from typing import NamedTuple
 
 from backend.loop.axes import Found
@@ -34,6 +35,7 @@ OUTSIDE_RAD = 0.05
 STOP_SHARE = 0.25
 """Share of the way from the permitted range to the end stop that is as good as the stop."""
 FOLLOWING_S, MISMATCH_S, NOT_GIVEN_S, LEAF_S = 0.2, 0.05, 0.1, 0.02
+FOLLOWING_LEAK = 0.25
 FROZEN_S, FROZEN_MOTOR_RAD = 0.1, 0.03
 SPEED_S, TORQUE_S = 0.01, 0.03
 """Time constants over which the encoder's speed and the torques are averaged before they are judged."""
@@ -63,7 +65,7 @@ class Monitors:
         stiff, soft = (stiffness_motor_position(k, constant) for k in (mechanism.stiffest, mechanism.softest))
         self._stiff = stiff + STOP_SHARE * (stiffness_motor_position(limits.stiffness_high, constant) - stiff)
         self._soft = soft - STOP_SHARE * (soft - stiffness_motor_position(limits.stiffness_low, constant))
-        self._following = Lasting(FOLLOWING_S, period_s)
+        self._following = Lasting(FOLLOWING_S, period_s, FOLLOWING_LEAK)
         self._mismatch = Lasting(MISMATCH_S, period_s)
         self._leaf = Lasting(LEAF_S, period_s)
         self._not_given = {"motor": Lasting(NOT_GIVEN_S, period_s), "stiffness": Lasting(NOT_GIVEN_S, period_s)}
@@ -171,16 +173,19 @@ class Monitors:
 
 
 class Lasting:
-    """Whether a condition has been fulfilled without a break for some time."""
+    """Whether a condition has been fulfilled for some time, without a break; or, with a `leak`, most of the time.
 
-    def __init__(self, for_s: float, period_s: float) -> None:
-        self._needed = max(1, round(for_s / period_s))
-        self._cycles = 0
+    With a leak the time runs back by that share while the condition is not fulfilled, so that an oscillation counts too.
+    """
+
+    def __init__(self, for_s: float, period_s: float, leak: float = math.inf) -> None:
+        self._needed, self._leak = max(1, round(for_s / period_s)), leak
+        self._cycles = 0.0
 
     def __call__(self, condition: bool) -> bool:
-        self._cycles = self._cycles + 1 if condition else 0
+        self._cycles = self._cycles + 1.0 if condition else max(0.0, self._cycles - self._leak)
         return self._cycles >= self._needed
 
     def restart(self) -> None:
         """Start counting anew."""
-        self._cycles = 0
+        self._cycles = 0.0

@@ -52,18 +52,18 @@ class Stopping:
 
     def leave_to_drive(self, axis: Axis, now: float) -> None:
         """Let the drive stop an axis by itself: what it measures or gives can be trusted no more."""
-        if axis not in self._left_s and self._axes.on(axis):
+        if self._axes.on(axis) and axis not in self._left_s:
             self._left_s[axis] = now
             self._axes.stop(axis)
 
     def step(self, moment: Moment) -> Course:
         """Go on by one cycle and return what it asks for."""
         now = moment.now
-        for axis, since in self._left_s.items():
-            if now - since >= QUICK_STOP_S and self._axes.on(axis):
-                self._axes.disarm(axis)
+        for axis in [axis for axis, since in self._left_s.items() if now - since >= QUICK_STOP_S]:
+            del self._left_s[axis]
+            self._axes.disarm(axis)
         brakes, share = self._brake(moment)
-        if self._motor_off_s is None and not self._axes.on("motor"):
+        if self._motor_off_s is None and not self._axes.on("motor") and "motor" not in self._left_s:
             self._motor_off_s = now
         return Course(brakes, share, self._hold(moment))
 
@@ -104,7 +104,7 @@ class Stopping:
     @property
     def off(self) -> bool:
         """Whether both axes are off."""
-        return not self._axes.any_on
+        return not self._axes.any_on and not self._left_s
 
     def over(self, now: float) -> bool:
         """Return whether the stop is over: both axes off, or the motor off and the spring loaded for good."""

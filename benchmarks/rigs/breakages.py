@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from backend.emulator.start import Emulator
+from backend.emulator.start import EmulatorHandle
 
 from benchmarks.live_server import Server
 from benchmarks.rigs.line import Line
@@ -16,7 +16,7 @@ from benchmarks.rigs.processes import kill
 class Case:
     """What a breakage may take hold of."""
 
-    emulator: Emulator
+    emulator: EmulatorHandle
     server: Server
     line: Line
     operator: Operator

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from backend.emulator.start import Emulator, start_emulator
+from backend.emulator.start import EmulatorHandle, start_emulator
 
 from benchmarks.live_server import Server, running_server
 from benchmarks.rigs.activities import ACTIVITIES
@@ -50,7 +50,7 @@ class Outcome:
 HEADING = f"{'broken':26} {'while':19} {'ms':>7} {'rad/s':>8} {'rad':>8}  re-armed  final state"
 
 
-def outcome(breakage: Breakage, activity: str, server: Server, emulator: Emulator) -> Outcome:
+def outcome(breakage: Breakage, activity: str, server: Server, emulator: EmulatorHandle) -> Outcome:
     """Arm, begin the activity, break it, watch, and return what happened."""
     line = Line(server.port)
     operator = Operator(line.port)
@@ -78,7 +78,7 @@ def _after(server: Server) -> tuple[str, str]:
 
 
 @contextmanager
-def fresh(rate_hz: int) -> Iterator[tuple[Server, Emulator]]:
+def fresh(rate_hz: int) -> Iterator[tuple[Server, EmulatorHandle]]:
     """Start a new emulator and a new server: no case inherits what another one broke."""
     emulator = start_emulator()
     try:

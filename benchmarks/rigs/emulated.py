@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from importlib.resources import files
 from typing import Any
 
-from backend.emulator.start import Emulator, start_emulator
+from backend.emulator.start import EmulatorHandle, start_emulator
 
 from benchmarks.live_server import Server, running_server
 from benchmarks.rigs.operator import Operator
@@ -24,7 +24,7 @@ def rig_text(bus_port: int, rate_hz: int) -> str:
 
 
 @contextmanager
-def emulated_rig(rate_hz: int = 500, probed: bool = False, **settings: str) -> Iterator[tuple[Server, Emulator]]:
+def emulated_rig(rate_hz: int = 500, probed: bool = False, **settings: str) -> Iterator[tuple[Server, EmulatorHandle]]:
     """Start emulator and server, and let the server know the rig."""
     emulator = start_emulator()
     try:
@@ -35,7 +35,7 @@ def emulated_rig(rate_hz: int = 500, probed: bool = False, **settings: str) -> I
         emulator.close()
 
 
-def introduce(server: Server, emulator: Emulator, rate_hz: int) -> None:
+def introduce(server: Server, emulator: EmulatorHandle, rate_hz: int) -> None:
     """Give the server the emulator's rig file."""
     body = rig_text(emulator.port, rate_hz).encode()
     address = f"http://127.0.0.1:{server.port}/api/rigs/{RIG}"
@@ -48,6 +48,7 @@ def armed(operator: Operator, **tuning: Any) -> None:
     operator.ask("connect_rig", rig=RIG)
     operator.present = True
     operator.wait_for("connected", "ready")
+    operator.wait(lambda: operator.snapshot["rig"].get("lease_left_s", 0.0) > 0.0, "first renewal")
     if tuning:
         operator.ask("tune", changes=tuning)
     if not operator.snapshot["rig"]["homed"]:

@@ -4,6 +4,7 @@ from collections import deque
 from typing import Any
 
 import numpy as np
+from backend.rigs.simulated import SimulatedRig
 from numpy.typing import NDArray
 
 from backend.loop import messages
@@ -13,7 +14,6 @@ from backend.loop.rig_loop import RigLoop
 from backend.rigs.faults import Fault
 from backend.rigs.rig import Axis, AxisStatus, Measured
 from backend.rigs.rig_file import RigFile
-from backend.rigs.simulated import SimulatedRig
 from backend.telemetry.beats import LEASE, WEB, Beats
 from backend.telemetry.ring import Ring, RingReader, RingWriter
 from backend.telemetry.stop_flag import StopFlag
@@ -78,7 +78,10 @@ class BrokenRig(SimulatedRig):
         before = self._kept or now
         for part in [part for part, cycles in self.missed.items() if cycles > 0]:
             self.missed[part] -= 1
-            old = {f"{part}_position": getattr(before, f"{part}_position"), f"{part}_age": getattr(before, f"{part}_age") + 1}
+            old = {
+                f"{part}_position": getattr(before, f"{part}_position"),
+                f"{part}_age": getattr(before, f"{part}_age") + 1,
+            }
             now = now._replace(**old)
         self._kept = now
         return now._replace(**self.spoiled)
@@ -132,13 +135,13 @@ class Pipe:
 class RigBench:
     """Drives one loop turn by turn; time is injected, server and operator are alive unless a test says otherwise."""
 
-    def __init__(self, scenario: Scenario = SCENARIO, file: RigFile = FILE) -> None:
+    def __init__(self, scenario: Scenario = SCENARIO, file: RigFile = FILE, truth: Scenario | None = None) -> None:
         self.scenario, self.file = scenario, file
         self.ring, self.flag, self.beats, self.pipe = Ring(), StopFlag(), Beats(), Pipe()
         self.reader, self.writer = RingReader(self.ring.name), RingWriter(self.ring.name)
         self.now = 1000.0
         self.alive = {WEB: True, LEASE: True}
-        self.rig = BrokenRig(scenario)
+        self.rig = BrokenRig(truth or scenario)
         self.loop = RigLoop(
             self.writer, self.flag, self.beats, self.pipe, lambda file, scenario: self.rig,  # type: ignore[arg-type]
             Pacer(lambda: self.now, self.sleep), lambda: self.now,

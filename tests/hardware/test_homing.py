@@ -15,7 +15,9 @@ INERTIA, DAMPING = 1e-4, 1e-4
 class Axis:
     """A stiffness motor between two stops, switched on somewhere between them; positions count from there."""
 
-    def __init__(self, period_s: float, low: float = 31.4, high: float = 115.7, at: float = 53.7, friction: float = 0.0):
+    def __init__(
+        self, period_s: float, low: float = 31.4, high: float = 115.7, at: float = 53.7, friction: float = 0.0
+    ):
         self.period_s, self.low, self.high, self.at, self.friction = period_s, low, high, at, friction
         self.zero, self.omega, self.waiting = at, 0.0, 0.0
         self.fastest = self.hardest = 0.0
@@ -50,7 +52,9 @@ def homed(axis: Axis, settings: Homing = SETTINGS, limit_s: float = 40.0) -> Hom
 @pytest.mark.parametrize("rate_hz", [100, 250, 500, 1000])
 @pytest.mark.parametrize("friction", [0.0, 0.04])
 @pytest.mark.parametrize("at", [31.4, 53.7, 115.7])
-def test_it_finds_both_stops_and_ends_at_rest_in_the_middle_of_the_range(rate_hz: int, friction: float, at: float) -> None:
+def test_it_finds_both_stops_and_ends_at_rest_in_the_middle_of_the_range(
+    rate_hz: int, friction: float, at: float
+) -> None:
     axis = Axis(1.0 / rate_hz, at=at, friction=friction)
     law = homed(axis)
     assert law.failure == ""

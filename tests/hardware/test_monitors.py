@@ -115,7 +115,9 @@ def test_a_deflection_is_a_quarter_above_its_limit(monitors: Monitors) -> None:
 def test_the_leaf_bears_less_torque_where_it_is_soft(monitors: Monitors) -> None:
     def lasts(torque: float, stiffness: float) -> bool:
         monitors.restart()
-        return LEAF_TORQUE in [f for _ in range(20) for f in found(monitors, seen(spring_torque=torque, stiffness=stiffness))]
+        return LEAF_TORQUE in [
+            f for _ in range(20) for f in found(monitors, seen(spring_torque=torque, stiffness=stiffness))
+        ]
 
     assert lasts(15.0, 50.0)
     assert lasts(-15.0, 50.0)
@@ -145,6 +147,15 @@ def test_a_following_error_is_one_after_a_fifth_of_a_second(monitors: Monitors) 
     assert cycles_until(monitors, FOLLOWING, seen(error=-0.21)) == 100
     assert cycles_until(monitors, FOLLOWING, seen(error=0.19)) == 1000
     assert cycles_until(monitors, FOLLOWING, seen(error=0.5, closed=False)) == 1000
+
+
+def test_an_error_that_swings_through_zero_is_a_following_error_too(monitors: Monitors) -> None:
+    def swings(amplitude: float) -> list[Fault]:
+        monitors.restart()
+        return [f for k in range(1000) for f in found(monitors, seen(error=amplitude * math.sin(20.0 * k * T)))]
+
+    assert FOLLOWING in swings(0.4)
+    assert FOLLOWING not in swings(0.205)
 
 
 @pytest.mark.parametrize("which", ["link_disturbance", "motor_disturbance"])

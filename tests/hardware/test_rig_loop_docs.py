@@ -10,7 +10,9 @@ TEXT = (Path(__file__).parents[2] / "docs" / "faults.md").read_text("utf-8")
 
 
 def test_every_fault_is_listed_with_its_name_cause_and_remedy() -> None:
-    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in TEXT.splitlines() if re.match(r"\| \d+ \|", line)]
+    rows = [
+        [cell.strip() for cell in line.split("|")[1:-1]] for line in TEXT.splitlines() if re.match(r"\| \d+ \|", line)
+    ]
     assert [(int(row[0]), row[1].strip("`"), row[2], row[4]) for row in rows] == [tuple(fault) for fault in FAULTS]
     assert all(row[3].endswith(".") for row in rows)
 
@@ -23,8 +25,12 @@ def test_numbers_rise_and_names_differ() -> None:
 
 def test_what_is_said_to_unhome_or_to_last_until_reconnected_does() -> None:
     rows = {int(line.split("|")[1]): line for line in TEXT.splitlines() if re.match(r"\| \d+ \|", line)}
-    assert {n for n, row in rows.items() if "not homed afterwards" in row} == {fault.number for fault in conduct.UNHOMES}
-    until = {n for n, row in rows.items() if "until the rig is connected again" in row or "Refuses the connection" in row}
+    assert {n for n, row in rows.items() if "not homed afterwards" in row} == {
+        fault.number for fault in conduct.UNHOMES
+    }
+    until = {
+        n for n, row in rows.items() if "until the rig is connected again" in row or "Refuses the connection" in row
+    }
     assert until == latch.UNTIL_RECONNECTED
     quick = {fault.number: set(axes) for fault, axes in conduct.LOST.items()}
     told = {n: row for n, row in rows.items() if "quick stop" in row}
@@ -41,5 +47,13 @@ def test_the_figures_of_the_stop_are_those_of_the_code() -> None:
         (arming.BLEND_S, 0.1),
     )  # fmt: skip
     assert [code for code, _ in figures] == [told for _, told in figures]
-    for words in ("below 0.02 rad/s for 20 ms", "after 0.6 s", "within 50 ms", "carries 1 N·m", "0.1 s", "0.3 s", "1.5 s"):
+    for words in (
+        "below 0.02 rad/s for 20 ms",
+        "after 0.6 s",
+        "within 50 ms",
+        "carries 1 N·m",
+        "0.1 s",
+        "0.3 s",
+        "1.5 s",
+    ):
         assert words in re.sub(r"\s+", " ", TEXT)
