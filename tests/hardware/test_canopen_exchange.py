@@ -138,22 +138,56 @@ def test_of_two_answers_in_one_cycle_the_newer_is_this_cycles() -> None:
     assert fake.rig.health().late_answers == 1
 
 
-def test_answers_that_are_always_more_than_a_cycle_late_never_become_fresh() -> None:
+def test_answers_that_are_always_more_than_a_cycle_late_are_found_out_and_never_fresh_again() -> None:
     fake = FakeRig().ready()
-    fake.turn(cycles=300)
-    fake.link.delay_s = lambda place: 2.9e-3
-    assert [fake.turn().link_age for _ in range(12)] == list(range(1, 13))
+    fake.turn(cycles=10)
+    fake.link.delay_s = lambda place: 2.1e-3  # as quick after the next SYNC as any answer
+    ages = [fake.turn().link_age for _ in range(60)]
+    assert ages[:4] == [1, 0, 0, 0], "taken for new until the cycle without SYNC"
+    assert ages[4:] == list(range(1, 57))
+    assert fake.rig.health().late_answers > 10
+    fake.link.delay_s = lambda place: ANSWER_DELAY_S
+    fake.turn(cycles=6)
+    assert fake.turn().link_age == 0
 
 
-def test_a_lost_answer_costs_one_cycle() -> None:
+@pytest.mark.parametrize("slow_s", [ANSWER_DELAY_S, 1.1e-3])
+def test_a_lost_answer_costs_two_cycles_and_never_two_in_a_row(slow_s: float) -> None:
     fake = FakeRig().ready()
-    fake.turn(cycles=300)
+    fake.turn(cycles=10)
     for _ in range(20):
         fake.link.delay_s = lambda place: None
         assert fake.turn().link_age == 1
-        fake.link.delay_s = lambda place: ANSWER_DELAY_S
-        assert fake.turn().link_age == 0
+        fake.link.delay_s = lambda place: slow_s
+        assert [fake.turn().link_age for _ in range(20)] == [0, 0, 0, 1, *[0] * 16]
     assert fake.rig.health().late_answers == 0
+
+
+def test_the_cycle_that_settles_a_doubt_is_without_sync_but_not_without_torques() -> None:
+    fake = FakeRig().armed()
+    fake.turn(10.0)
+    fake.link.delay_s = lambda place: None
+    fake.turn(10.0)
+    fake.link.delay_s = lambda place: ANSWER_DELAY_S
+    fake.turn(10.0, cycles=3)
+    fake.bus.sent.clear()
+    measured = fake.turn(30.0)
+    assert [m.arbitration_id for m in fake.bus.sent if m.arbitration_id < 0x700] == [0x201, 0x202]
+    assert measured.motor_torque == pytest.approx(10.0, abs=MOTOR_UNIT), "not taken over without SYNC"
+    assert fake.turn(30.0).motor_torque == pytest.approx(30.0, abs=MOTOR_UNIT)
+
+
+def test_a_doubt_waits_for_a_cycle_in_which_nothing_is_missing() -> None:
+    fake = FakeRig().ready()
+    fake.turn(cycles=10)
+    fake.link.delay_s = lambda place: None
+    fake.turn()
+    fake.link.delay_s = lambda place: ANSWER_DELAY_S
+    fake.turn()
+    fake.stiffness.delay_s = lambda place: None
+    fake.bus.sent.clear()
+    fake.turn(cycles=5)
+    assert len(fake.bus.sent_to(0x080)) == 5
 
 
 def test_a_lost_torque_alone_ages_the_axis_only_when_it_stays_away() -> None:
