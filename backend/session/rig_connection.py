@@ -52,6 +52,8 @@ class RigConnection:
     def __init__(self, session: "Session", files: RigFiles) -> None:
         self._session, self._files = session, files
         self._before: Simulation | None = None
+        self.bus = asyncio.Lock()
+        """Held by whoever opens a rig's bus from this server."""
 
     async def connect(self, asked: RigName, by: str, key: str | None) -> Message:
         """Connect a rig and take control of it; what is refused leaves the simulation, from t = 0."""
@@ -72,8 +74,8 @@ class RigConnection:
         try:
             await self._open(file, begun)
         except Problem:
-            session.rig.state.connecting = False
             await session.link.stop()
+            session.rig.state.connecting = False
             session.status.fail(f"rig {file.name} does not answer. Reset to connect it anew, or disconnect.")
             session.tell_state()
             raise
@@ -88,7 +90,7 @@ class RigConnection:
 
     async def _connect(self, name: str, by: str, key: str | None) -> Message:
         session = self._session
-        async with session.turn:
+        async with session.turn, self.bus:
             session.commands.permit("connect_rig", key)  # another page may have been faster
             party = session.rig.control.take_for_connecting(key)
             begun, file = await self._planned(name)
@@ -155,6 +157,7 @@ class RigConnection:
             return
         await session.start_control()
         session.preset = before.preset
+        session.running.load(before.scenario)  # what its first state is told of
         await session.runs.load(before.scenario, run=before.run)
         session.history.begin()
         session.tell_state()

@@ -108,7 +108,11 @@ def test_a_drive_s_fault_is_told_brakes_and_cannot_be_reset_while_it_stands(
     for word in (0, RESET, 0):
         bench.command(word, MOTOR)
         assert bench.state() == "fault"
+    bench.nmt(129, MOTOR)
+    bench.nmt(1, MOTOR)
+    assert bench.state() == "fault"  # its cause stands after a restart too
     bench.faults.clear()
+    bench.command(0, MOTOR)
     bench.command(RESET, MOTOR)
     assert bench.state() == "switch on disabled"
 

@@ -176,7 +176,7 @@ def test_the_command_line_sets_shows_and_clears_faults(emulator: EmulatorHandle)
 
 
 def test_a_taken_port_is_refused_in_a_sentence(emulator: EmulatorHandle) -> None:
-    with pytest.raises(OSError, match="the emulator cannot start: .*in use"):
+    with pytest.raises(OSError, match=r"the emulator cannot start: .*in use"):
         start_emulator(port=emulator.port)
 
 
