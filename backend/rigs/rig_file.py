@@ -127,7 +127,7 @@ class RigFile(Part):
     note: str = Field("", max_length=500, description="Shown beside the name.")
     actuator: str | None = Field(None, description="Name in the actuator library; null = the default actuator.")
     preset: str | None = Field(None, description="Preset to begin with; null = the tuning in force, if it fits.")
-    rate_hz: Literal[100, 200, 250, 500, 1000] = Field(
+    rate_hz: Literal[200, 250, 500, 1000] = Field(
         500, description="Cycles a second; 500 on CAN, 250 on a USB serial adapter."
     )
     answer_share: float = Field(
