@@ -53,15 +53,13 @@ def rig_routes(session: Session, pool: Pool, library: RigLibrary) -> APIRouter:
     @router.post("/rigs/{name}/check")
     async def check(name: str) -> Document:
         """Open the rig's bus, compare who answers with its file, and close it; nothing is written and nothing moves."""
-        if session.rig.file is not None:
-            raise Problem(
-                409,
-                "Rig connected",
-                f"Rig {session.rig.name} is connected, and its bus is in use; disconnect it first.",
-            )
         rig = await asyncio.to_thread(library.file, name)
         actuator = await asyncio.to_thread(actuator_of, session, rig)
-        lines = await _checked(pool, rig, actuator.motor.gear_ratio)
+        if session.rig.file is not None:
+            in_use = f"Rig {session.rig.name} is connected, and its bus is in use; disconnect it first."
+            raise Problem(409, "Rig connected", in_use)
+        async with session.rig.connection.bus:
+            lines = await _checked(pool, rig, actuator.motor.gear_ratio)
         return {"ok": all(line["ok"] for line in lines), "lines": lines}
 
     return router

@@ -52,6 +52,8 @@ class RigConnection:
     def __init__(self, session: "Session", files: RigFiles) -> None:
         self._session, self._files = session, files
         self._before: Simulation | None = None
+        self.bus = asyncio.Lock()
+        """Held by whoever opens a rig's bus from this server."""
 
     async def connect(self, asked: RigName, by: str, key: str | None) -> Message:
         """Connect a rig and take control of it; what is refused leaves the simulation, from t = 0."""
@@ -72,8 +74,8 @@ class RigConnection:
         try:
             await self._open(file, begun)
         except Problem:
-            session.rig.state.connecting = False
             await session.link.stop()
+            session.rig.state.connecting = False
             session.status.fail(f"rig {file.name} does not answer. Reset to connect it anew, or disconnect.")
             session.tell_state()
             raise
@@ -83,12 +85,13 @@ class RigConnection:
         """End the rig's control process in order: drives disabled, bus closed. Without a rig nothing happens."""
         session = self._session
         if session.rig.file is not None:
+            session.rig.state.leaving = True
             await session.link.stop(messages.Disconnect())
             await session.rig.control.heart.end()
 
     async def _connect(self, name: str, by: str, key: str | None) -> Message:
         session = self._session
-        async with session.turn:
+        async with session.turn, self.bus:
             session.commands.permit("connect_rig", key)  # another page may have been faster
             party = session.rig.control.take_for_connecting(key)
             begun, file = await self._planned(name)
@@ -105,7 +108,7 @@ class RigConnection:
                 session.note("rig", f"rig {name} is not connected: {problem.detail}", by, "warning")
                 raise Problem(409 if problem.status == 422 else problem.status, "Not connected", detail) from problem
             self._adopt(file, begun, by)
-            session.rig.control.take_for_connecting(party.key)
+            session.rig.control.keep(party)
         return {"rig": file.name, "key": party.key, "tuning_id": session.status.tuning_id}
 
     async def _planned(self, name: str) -> tuple[Begun, RigFile]:
@@ -155,6 +158,7 @@ class RigConnection:
             return
         await session.start_control()
         session.preset = before.preset
+        session.running.load(before.scenario)  # what its first state is told of
         await session.runs.load(before.scenario, run=before.run)
         session.history.begin()
         session.tell_state()

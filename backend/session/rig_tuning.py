@@ -66,9 +66,9 @@ async def begun_scenario(session: "Session", rig: RigFile) -> Begun:
 
 
 def _candidates(session: "Session", rig: RigFile) -> tuple[list[Candidate], list[str]]:
-    """Return what may be meant, the rig's own preset first, and what is not to be had."""
+    """Return what may be meant, and what is not to be had: the rig's own preset goes first, unless it was connected before."""
     found, missing = [], []
-    if rig.preset is not None:
+    if rig.preset is not None and not session.rig.connected:
         try:
             preset = session.presets.presets.get(rig.preset)
             found.append(Candidate(f"preset {rig.preset}", preset.content.tuning, InForce.of(preset)))

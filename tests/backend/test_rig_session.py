@@ -137,6 +137,7 @@ def test_disconnecting_brings_back_what_ran_and_history_begins_anew_both_ways(da
         assert bench.session.status.epoch > epoch + 1  # the rig's run, then one of the simulation
         assert (await refused(bench, "undo")).title == "Nothing to undo"
         assert bench.diary.of(Run)[-1].rig == "simulated"
+        assert bench.events("state")[-1] == "Running, tracking sine 0.50 rad, 0.25 Hz"
         assert (await refused(bench, "arm")).title == "No rig"
 
     at_rig(data_dir, work)
@@ -163,7 +164,9 @@ def test_a_page_that_goes_while_a_rig_connects_does_not_tear_the_session_apart(d
         import asyncio
 
         asked = asyncio.create_task(bench.ask("connect_rig", rig="emulator"))
-        while bench.snapshot()["state"] != "starting":
+        for _ in range(1000):
+            if bench.snapshot()["state"] == "starting":
+                break
             await asyncio.sleep(0)
         asked.cancel()
         with pytest.raises(asyncio.CancelledError):
@@ -300,6 +303,22 @@ def test_a_silent_operator_is_told_of_once(data_dir: Path) -> None:
             bench.clock.now += 0.1
             bench.session.rig.watch()
         assert bench.events("control") == ["page 1 was silent for 0.4 s and lost control"]
+
+    at_rig(data_dir, work)
+
+
+def test_a_caller_whose_rig_took_long_to_connect_has_control_with_the_key_of_the_answer(data_dir: Path) -> None:
+    async def work(bench: RigBench) -> None:
+        opened = bench.session.rig.connection._open
+
+        async def slow(*arguments: Any) -> None:
+            await opened(*arguments)
+            bench.clock.now += 20.0
+
+        bench.session.rig.connection._open = slow  # type: ignore[method-assign]
+        answer = await bench.call("connect_rig", "REST", None, rig="emulator")
+        await bench.call("home_stiffness", "REST", answer["key"])
+        assert bench.snapshot()["control"]["operator"] == "REST"
 
     at_rig(data_dir, work)
 
@@ -482,7 +501,7 @@ def test_a_dead_control_process_is_a_fault_and_reset_connects_anew(data_dir: Pat
         assert isinstance(connect, messages.Connect)
         assert connect.scenario.tuning.observer.bandwidth == 90.0  # type: ignore[union-attr]
 
-    at_rig(data_dir, work)
+    at_rig(data_dir, work, rigs=Shelf(EMULATOR.model_copy(update={"preset": "none"})))
 
 
 def test_after_a_dead_control_process_a_reset_may_fail_and_be_tried_again_or_the_rig_be_left(data_dir: Path) -> None:
