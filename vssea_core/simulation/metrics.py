@@ -42,7 +42,7 @@ def _of(channel: str, statistic: Callable[[Rows], float]) -> Callable[[Rows], fl
     return lambda rows: statistic(_column(rows, channel))
 
 
-TORQUE_LIMITS = sum(limit.bit for limit in LIMITS if limit.name.startswith("motor_"))
+TORQUE_LIMITS = sum(limit.bit for limit in LIMITS if limit.name.startswith(("motor_", "rig_")))
 
 
 def _saturated(rows: Rows) -> float:
