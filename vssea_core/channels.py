@@ -72,4 +72,11 @@ LIMITS: tuple[Limit, ...] = (
     Limit(32, "leaf_torque", "spring torque above the leaf spring's limit"),
     Limit(64, "stiffness_rate", "stiffness change slowed to its permitted rate"),
     Limit(128, "stiffness_end_stop", "stiffness motor at an end stop"),
+    Limit(256, "rig_torque", "limited by the rig's torque limit"),
+    Limit(512, "rig_torque_rate", "limited by the rig's torque rate"),
+    Limit(1024, "rig_speed", "limited by the rig's speed limit"),
+    Limit(2048, "rig_position", "limited by the rig's position limits"),
+    Limit(4096, "rig_deflection", "limited by the rig's deflection limit"),
+    Limit(8192, "rig_stiffness", "limited by the rig's stiffness range"),
+    Limit(16384, "blended_in", "torque blended in after arming"),
 )

@@ -84,9 +84,8 @@ class Emulator:
     def _re_enabled(self, which: int) -> bool:
         """Return whether a drive came into operation after it had left it, since the last watch."""
         drive, (enabled, left) = self.drives[which], self._began[which]
-        comings, goings = drive.times_enabled - enabled, drive.times_left - left
-        was_enabled = enabled > left
-        return goings > 0 and comings > (0 if was_enabled else 1)
+        comings, was_enabled = drive.times_enabled - enabled, enabled > left
+        return comings > (0 if was_enabled else 1)
 
     def states(self) -> dict[str, str]:
         """Return the state of each drive in words."""

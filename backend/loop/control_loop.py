@@ -1,7 +1,6 @@
 """The loop of the control process, one turn at a time: STOP first, then commands, then samples."""
 
 import time
-from collections.abc import Iterator
 from multiprocessing.connection import Connection
 
 from backend.loop.messages import (
@@ -25,7 +24,9 @@ from backend.loop.messages import (
     Step,
 )  # fmt: skip
 from backend.loop.pacer import Pacer
-from backend.telemetry.ring import EPOCH, EXECUTION_US, LATENESS_US, OVERRUNS, PERIOD_S, RUNS, WRITTEN, RingWriter
+from backend.loop.pipe_end import PipeEnd
+from backend.loop.stamps import stamp
+from backend.telemetry.ring import OVERRUNS, RUNS, RingWriter
 from backend.telemetry.stop_flag import StopFlag
 from vssea_core.simulation.closed_loop import ClosedLoop
 
@@ -40,29 +41,32 @@ class ControlLoop:
     """Owns the closed loop; everything that can be asked of it comes through the pipe or the stop flag."""
 
     def __init__(self, ring: RingWriter, flag: StopFlag, pipe: Connection, pacer: Pacer | None = None) -> None:
-        self._ring, self._flag, self._pipe = ring, flag, pipe
+        self._ring, self._flag, self._pipe = ring, flag, PipeEnd(pipe)
         self._pacer = pacer or Pacer()
         self._loop: ClosedLoop | None = None
         self._pace = 1.0
         self.state: State = "starting"
         self.epoch = int(ring.header[RUNS])  # goes on where a process that died left off
         self._stops_seen = flag.count if self.epoch else 0  # a STOP while the session starts counts too
-        self.leaving = False
-        self._reports: list[Report] = []
+
+    @property
+    def leaving(self) -> bool:
+        """Whether the web process has closed its end of the pipe."""
+        return self._pipe.lost
 
     def turn(self, late_s: float = 0.0) -> float:
         """Do one turn that started `late_s` too late; return the length [s] of a turn."""
         if self._flag.count != self._stops_seen:
             self._stop()
-        for number, command in self._commands():
-            self._report(self._obey(number, command))
+        for number, command in self._pipe.commands():
+            self._pipe.report(self._obey(number, command))
         length = IDLE_TURN_S
         if self._loop is not None and self.state in TICKING:
             period = self._loop.period_s / self._pace
             samples = max(1, round(SHORTEST_TURN_S / period))
             self._advance(samples, late_s)
             length = samples * period
-        self._send_reports()
+        self._pipe.send()
         return length
 
     def run(self) -> None:
@@ -88,13 +92,10 @@ class ControlLoop:
         done, fault = loop.advance(rows)
         taken_us = (time.perf_counter_ns() - started) * 1e-3
         kept = min(done + 1, len(rows)) if fault else done  # the sample from which it could not go on is worth seeing
-        rows[:kept, EPOCH] = self.epoch
-        rows[:kept, PERIOD_S] = loop.period_s
-        rows[:kept, LATENESS_US] = late_s * 1e6
-        rows[:kept, EXECUTION_US] = taken_us / len(rows)
-        self._ring.header[WRITTEN] += kept
+        stamp(rows[:kept], self.epoch, loop.period_s, late_s, taken_us / len(rows))
+        self._ring.announce(kept)
         for follower in loop.passed:
-            self._report(Followed(follower.index, follower.at_s, loop.tuning_id))
+            self._pipe.report(Followed(follower.index, follower.at_s, loop.tuning_id))
         loop.passed.clear()
         if fault is not None:
             self._become("fault", f"Diverged at t = {loop.time_s:.3f} s: {fault}. Change the tuning, then Reset.")
@@ -106,13 +107,6 @@ class ControlLoop:
         if self._loop is not None:
             self._loop.enabled = False
         self._become("stopped", STOP_REASON)
-
-    def _commands(self) -> Iterator[tuple[int, Command]]:
-        try:
-            while self._pipe.poll():
-                yield self._pipe.recv()
-        except (EOFError, OSError):
-            self.leaving = True
 
     def _obey(self, number: int, command: Command) -> Report:
         try:
@@ -188,16 +182,4 @@ class ControlLoop:
 
     def _become(self, state: State, reason: str | None) -> None:
         self.state = state
-        self._report(Changed(state, reason, self.epoch, self._loop.time_s if self._loop else 0.0))
-
-    def _report(self, report: Report) -> None:
-        self._reports.append(report)
-
-    def _send_reports(self) -> None:
-        """Send what this turn reported, after its samples: who reads of a change finds it in the ring."""
-        try:
-            for report in self._reports:
-                self._pipe.send(report)
-        except OSError:
-            self.leaving = True
-        self._reports.clear()
+        self._pipe.report(Changed(state, reason, self.epoch, self._loop.time_s if self._loop else 0.0))

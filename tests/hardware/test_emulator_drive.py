@@ -274,6 +274,18 @@ def test_a_host_that_hangs_but_still_beats_is_stopped_by_the_deadline_of_its_pdo
     assert bench.emergencies() == [0]
 
 
+def test_a_host_that_goes_on_as_if_nothing_had_been_does_not_bring_a_holding_drive_back() -> None:
+    bench = Bench()
+    for index, value in ((0x6007, 3), (0x605A, 6)):
+        assert bench.write(MOTOR, index, 0, value, 2) == 0
+    assert bench.write(MOTOR, 0x1400, 5, 20, 2) == 0
+    bench.enabled(MOVING).run(0.2)
+    bench.wait(0.05)
+    bench.run(1.0)  # its controlword still says: enable operation
+    assert bench.state() == "quick stop active"
+    assert not bench.emulator.peaks()["re_enabled"]
+
+
 @pytest.mark.parametrize("command", [2, 128, 129, 130])
 def test_ending_the_exchange_takes_a_moving_drive_out_of_operation(command: int) -> None:
     bench = moving(x6007=3)

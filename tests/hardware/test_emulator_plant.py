@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from backend.emulator.drive import EFFICIENCY
 from backend.emulator.plant import LINK, MOTOR, STIFFNESS, EmulatedPlant, default_actuator
 from tests.hardware import emulator_bench as host
 from tests.hardware.emulator_bench import Bench
 from vssea_core.actuator.parameters import Actuator, EquilibriumMotor
 
 TURN = 2.0 * math.pi
+EFFICIENCY = 0.7
 Y, J_L, B_L, J_E, B_E, J_MS, B_MS = 6.2e7, 0.10, 0.10, 3.17, 4.0, 1.0e-4, 1.0e-4
 
 

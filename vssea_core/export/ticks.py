@@ -11,8 +11,8 @@ from vssea_core.control.observer import Memory, observe
 from vssea_core.control.packing import MEMORY_SIZE, ROW, is_scheduled, loaded_memory, loaded_prepared, take_row
 from vssea_core.control.prediction import predicted
 from vssea_core.signals.references import reference_at
-from vssea_core.simulation.kernel import gains_at
 from vssea_core.simulation.state import PLANT, loaded_rig
+from vssea_core.tick.decision import gains_at
 
 INPUT_UNITS = {
     "theta_l": "rad", "theta_e": "rad", "theta_ms": "rad", "omega_l": "rad/s", "omega_e": "rad/s", "omega_ms": "rad/s",

@@ -26,8 +26,7 @@ from vssea_core.actuator.parts import DELAY_LINE, advance_in_parts, lags_of_part
 from vssea_core.actuator.sensors import measure
 from vssea_core.actuator.spring import leaf
 from vssea_core.compiled import entry, inlined
-from vssea_core.control.law import StiffnessTarget, act
-from vssea_core.control.observer import Memory, observe
+from vssea_core.control.observer import Memory
 from vssea_core.control.packing import (
     MEMORY_SIZE,
     ROW,
@@ -37,11 +36,11 @@ from vssea_core.control.packing import (
     loaded_prepared,
     take_row,
 )  # fmt: skip
-from vssea_core.control.prediction import predicted
-from vssea_core.signals.disturbances import only_constants_and_sines
-from vssea_core.signals.references import TRANSITION_SIZE, decay_transition, reference_at, with_transition
-from vssea_core.signals.stiffness import SLEW_SIZE, SLEWED_SIZE, Slew, advance_stiffness
+from vssea_core.signals.references import TRANSITION_SIZE
+from vssea_core.signals.stiffness import SLEW_SIZE, SLEWED_SIZE, Slew
+from vssea_core.simulation.rig_period import needs_parts
 from vssea_core.simulation.state import APPLIED, DELAYED, HEAT, MEMORY, PENDING, PLANT, SLEWED, TRANSITION, loaded_rig
+from vssea_core.tick.decision import decide, gains_at, is_changing
 
 RUNNING, NOT_FINITE, SPRING_LEFT, RAN_AWAY = 0, 1, 2, 3
 ENDINGS = {
@@ -67,13 +66,6 @@ def health(state):
     if abs(state.theta_l) > FARTHEST:
         return RAN_AWAY
     return RUNNING
-
-
-@inlined
-def gains_at(memory, slewed):
-    """Return the stiffness motor position [rad] for which gains are taken: the last measured one, in steps of 1/1024 rad."""
-    theta_ms = memory.stiffness.measured if memory.spring.started != 0.0 else slewed[0]
-    return np.rint(theta_ms * 1024.0) / 1024.0
 
 
 @entry
@@ -110,16 +102,13 @@ def run(
     transition = state[TRANSITION : TRANSITION + TRANSITION_SIZE]
     slewed = state[SLEWED : SLEWED + SLEWED_SIZE]
     on_its_way = state[DELAYED : DELAYED + DELAY_LINE]
-    plain = only_constants_and_sines(link_terms) and only_constants_and_sines(motor_terms) and len(stiffness_terms) == 0
-    in_parts = rig.delay.samples + rig.delay.share != 0.0 or not plain
+    in_parts = needs_parts(rig, link_terms, motor_terms, stiffness_terms)
     part_lags = (rig.lags[0], rig.lags[0])
     if in_parts:
         part_lags = lags_of_parts(plant, rig.torque_lag_s, rig.delay.share, period)
     applied_e, applied_ms = state[APPLIED], state[APPLIED + 1]
     pending_e, pending_ms = state[PENDING], state[PENDING + 1]
-    changing = False
-    for i in range(TRANSITION_SIZE):
-        changing = changing or transition[i] != 0.0
+    changing = is_changing(transition)
 
     done, end = 0, RUNNING
     while done < count and end == RUNNING:
@@ -138,22 +127,10 @@ def run(
                 break
             time = (first + i) * period
             y = measure(rig.encoders, rig.noise, now, first + i)
-            memory = observe(observing, memory, y, applied_e, applied_ms)
-            target = reference_at(reference, time)
-            if changing:
-                target = with_transition(target, transition)
-                decay_transition(transition, period)
-            known_torque = tuning.law.spring_constant * memory.spring.torque
-            stiffness_target, rate_limited = advance_stiffness(slew, slewed, time, known_torque, period)
-            if predicts:  # the torque of this tick meets the plant one sample later
-                aim = reference_at(reference, time + period)
-                if changing:
-                    aim = with_transition(aim, transition)
-                ahead = predicted(tuning.law, memory, pending_e, stiffness_target.r2)
-                terms = act(tuning.law, ahead, aim, StiffnessTarget(slewed[1], slewed[2], slewed[3]))
-            else:
-                terms = act(tuning.law, memory, target, stiffness_target)
-
+            memory, target, stiffness_target, rate_limited, terms = decide(
+                observing, tuning, predicts, memory, y, applied_e, applied_ms, pending_e,
+                reference, transition, changing, slew, slewed, time, period,
+            )  # fmt: skip
             demanded = terms.motor_torque if enabled else 0.0
             torque, available, bits = limit_motor_torque(drives, heat, demanded, now.omega_e)
             if bits & (PEAK | CONTINUOUS | SPEED) == 0:
@@ -174,7 +151,7 @@ def run(
             if in_parts:
                 older, newer = passed_on(rig.delay, on_its_way, applied_e)
                 following, (load_l, load_e, load_ms) = advance_in_parts(
-                plant, rig.torque_lag_s, part_lags, now, older, newer, rig.delay.share, applied_ms,
+                    plant, rig.torque_lag_s, part_lags, now, older, newer, rig.delay.share, applied_ms,
                     link_terms, motor_terms, stiffness_terms, time, period,
                 )  # fmt: skip
             else:

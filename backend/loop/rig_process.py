@@ -1,0 +1,35 @@
+"""Entry of the control process of a rig."""
+
+import signal
+from multiprocessing.connection import Connection
+
+from backend.loop.real_time import compile_first, settle_down
+from backend.rigs.rig import Rig
+from backend.rigs.rig_file import RigFile
+from backend.telemetry.beats import Beats
+from backend.telemetry.ring import REAL_TIME, RingWriter
+from backend.telemetry.stop_flag import StopFlag
+from vssea_core.scenario import Scenario
+
+
+def rig_of(file: RigFile, scenario: Scenario) -> Rig:
+    """Return the rig that a file describes, not yet connected."""
+    from backend.rigs.canopen.rig import CanopenRig
+
+    return CanopenRig(file, scenario.actuator.motor.gear_ratio)
+
+
+def run_rig_process(ring_name: str, flag_name: str, beats_name: str, epoch: int, pipe: Connection) -> None:
+    """Turn the loop of a rig until `pipe` closes, Disconnect or SIGTERM; the rig is stopped, disabled and closed first."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is the web process's to handle
+    compile_first()
+    from backend.loop.messages import Ready
+    from backend.loop.rig_loop import RigLoop
+
+    ring, flag, beats = RingWriter(ring_name), StopFlag(flag_name), Beats(beats_name)
+    loop = RigLoop(ring, flag, beats, pipe, rig_of)
+    loop.epoch = epoch
+    signal.signal(signal.SIGTERM, lambda number, frame: loop.end())
+    ring.header[REAL_TIME] = settle_down()
+    pipe.send(Ready())
+    loop.run()
