@@ -77,6 +77,26 @@ def test_answers_that_are_always_more_than_a_cycle_late_are_found_out_and_never_
     fake.link.delay_s = lambda place: ANSWER_DELAY_S
     fake.turn(cycles=6)
     assert fake.turn().link_age == 0
+    fake.link.delay_s = lambda place: None
+    fake.turn()
+    fake.link.delay_s = lambda place: ANSWER_DELAY_S
+    assert fake.turn().link_age == 0, "trusted again"
+
+
+def test_a_late_answer_that_is_lost_on_the_way_is_not_waited_for_for_ever() -> None:
+    fake = FakeRig().ready()
+    for _ in range(3):
+        fake.turn(cycles=10)
+        fake.link.delay_s = lambda place: 2.1e-3
+        while fake.turn().link_age < 3:
+            pass
+        fake.link.delay_s = lambda place: None
+        fake.turn(cycles=3)
+        fake.link.delay_s = lambda place: 2.1e-3
+        fake.turn(cycles=3)
+        fake.link.delay_s = lambda place: ANSWER_DELAY_S
+        fake.turn(cycles=20)
+        assert fake.turn().link_age == 0
 
 
 @given(st.floats(1.25e-3, 20e-3))

@@ -23,7 +23,7 @@ class Answer:
     """
 
     __slots__ = (
-        "_came", "_came_before", "_lost", "_owed", "_probed_in", "_quiet", "_size", "_sound", "_unpack", "age", "can_id",
+        "_came", "_lost", "_owed", "_probed_in", "_quiet", "_size", "_sound", "_unpack", "age", "can_id",
         "content", "is_late",
     )  # fmt: skip
 
@@ -37,7 +37,7 @@ class Answer:
         self._unpack, self._size, self._sound = layout.unpack, layout.size, sound
         self._owed = 0  # asked for and not come
         self._lost = 0  # of these, taken for lost
-        self._came = self._came_before = 0  # in this cycle, and between the last one's end and this one's SYNC
+        self._came = 0  # in this cycle
         self._probed_in = self._quiet = 0
 
     @property
@@ -57,7 +57,7 @@ class Answer:
 
     def begin(self, asked: bool) -> None:
         """Begin a cycle, with a SYNC sent or without."""
-        self._came_before, self._came = self._came, 0
+        self._came = 0
         if self._probed_in > 1:
             self._probed_in -= 1
         if asked and self._owed < MOST_OWED:
@@ -79,13 +79,10 @@ class Answer:
 
     def probe(self) -> bool:
         """Close a cycle without SYNC: return whether a late answer came."""
-        came = self._came + self._came_before > 0
-        self._came = 0
+        came = self._came > 0
         self.age += 1
-        if came:
-            self.is_late, self._lost, self._quiet = True, 0, 0
-        else:
-            self._quiet += 1
+        self.is_late = self.is_late or came
+        self._quiet = 0 if came else self._quiet + 1
         is_over = not self._owed or not self.is_late or self._quiet >= QUIET_CYCLES
         if is_over:
             self._owed = self._lost = self._quiet = 0
@@ -94,11 +91,10 @@ class Answer:
 
     def settle(self) -> None:
         """Close a cycle with SYNC: the content is this cycle's where the age is 0 then."""
-        came, self._came = self._came, 0
         self.age += 1
-        if came and not self.is_expected:
+        if self._came and not self.is_expected:
             self.age, self.is_late = 0, False
-        elif came:
+        elif self._came:
             if not self._probed_in:
                 self._probed_in = PROBED_AFTER
             if not self.is_late:
