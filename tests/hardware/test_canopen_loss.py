@@ -109,7 +109,7 @@ def test_whatever_the_delay_beyond_the_deadline_nothing_is_fresh_after_some_cycl
     assert fake.rig.health().late_answers > 0
     fake.link.delay_s = lambda place: ANSWER_DELAY_S
     fake.turn(cycles=40)
-    assert all(fake.turn().link_age == 0 for _ in range(10))
+    assert [fake.turn().link_age for _ in range(10)].count(0) >= 9, "all but a last probe"
 
 
 @given(st.lists(st.sampled_from([None, 1e-4, 1.1e-3, 1.5e-3, 1.9e-3]), min_size=1, max_size=60))
@@ -145,7 +145,7 @@ def test_a_lost_answer_costs_two_cycles_and_never_two_in_a_row(slow_s: float) ->
         fake.link.delay_s = lambda place: None
         assert fake.turn().link_age == 1
         fake.link.delay_s = lambda place: slow_s
-        assert [fake.turn().link_age for _ in range(20)] == [0, 0, 0, 1, *[0] * 16]
+        assert [fake.turn().link_age for _ in range(60)] == [0, 0, 0, 1, *[0] * 56]
     assert fake.rig.health().late_answers == 0
 
 
@@ -161,6 +161,18 @@ def test_the_cycle_that_settles_a_doubt_is_without_sync_but_not_without_torques(
     assert [m.arbitration_id for m in fake.bus.sent if m.arbitration_id < 0x700] == [0x201, 0x202]
     assert measured.motor_torque == pytest.approx(10.0, abs=MOTOR_UNIT), "not taken over without SYNC"
     assert fake.turn(30.0).motor_torque == pytest.approx(30.0, abs=MOTOR_UNIT)
+
+
+def test_a_bus_that_loses_often_is_probed_once_in_fifty_cycles() -> None:
+    fake = FakeRig().ready()
+    fake.bus.sent.clear()
+    for _ in range(100):
+        fake.link.delay_s = lambda place: None
+        fake.turn()
+        fake.link.delay_s = lambda place: ANSWER_DELAY_S
+        assert fake.turn().link_age <= 1
+        fake.turn(cycles=3)
+    assert 490 <= len(fake.bus.sent_to(0x080)) < 500
 
 
 def test_a_doubt_waits_for_a_cycle_in_which_nothing_is_missing() -> None:

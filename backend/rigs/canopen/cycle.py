@@ -18,7 +18,9 @@ CORRUPTED_AT_ONCE, FORGIVEN_A_CYCLE = 3.0, 0.01
 """More malformed frames than this are a fault; one is forgiven every 100 cycles."""
 UNSENT_AT_ONCE = 3
 """Cycles in a row in which the interface took nothing that are a fault."""
-BUS_OFF_CLASS, CONTROLLER_CLASS, ACTIVE_AGAIN = 0x40, 0x04, 0x40
+PROBED_EVERY = 50
+"""Cycles from one doubt's settling to the next one's: a bus that loses frames must not lose many more cycles by it."""
+CONTROLLER_CLASS, ACTIVE_AGAIN = 0x04, 0x40
 _CLASSES = {
     0x001: "transmission timeout",
     0x002: "lost arbitration",
@@ -62,6 +64,7 @@ class Cycle:
         self._was_late = False
         self._asked_s = 0.0
         self._probing = False
+        self._probe_from = 0
         self.cycles = self.late = 0
         self.round_trip_s = 0.0
 
@@ -112,7 +115,13 @@ class Cycle:
         """Return whether to leave SYNC out this time; not on top of a missed cycle, unless that is what ails."""
         if not any(answer.wants_probe for answer in self._answers):
             return False
-        return self._probing or all(answer.age == 0 or answer.is_late for answer in self._answers)
+        if self._probing:
+            return True
+        is_due = self.cycles >= self._probe_from or any(answer.is_late for answer in self._answers)
+        if not is_due or not all(answer.age == 0 or answer.is_late for answer in self._answers):
+            return False
+        self._probe_from = self.cycles + PROBED_EVERY
+        return True
 
     def _settle(self, probing: bool) -> None:
         was_late = self._was_late
