@@ -38,6 +38,20 @@ def test_silence_counts_up_cycle_by_cycle_and_the_last_values_stand() -> None:
     assert ages(fake.turn()) == (0, 0, 0)
 
 
+def test_after_a_long_silence_little_is_sent_and_an_answer_ends_it() -> None:
+    fake = FakeRig().armed()
+    for node in fake.bus.nodes:
+        node.silent = True
+    fake.turn(cycles=300)
+    fake.bus.sent.clear()
+    assert fake.turn(cycles=1000).motor_age > 1000
+    assert len(fake.bus.sent) <= 4 * 4, "a socket to a host that is gone must not fill up"
+    for node in fake.bus.nodes:
+        node.silent = False
+    fake.turn(cycles=260)
+    assert [max(ages(fake.turn())) for _ in range(20)].count(0) >= 19
+
+
 def test_an_answer_after_the_deadline_is_late_and_not_taken_for_the_next_cycles() -> None:
     fake = FakeRig().ready()
     fake.turn(cycles=60)
