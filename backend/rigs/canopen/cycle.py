@@ -18,7 +18,11 @@ CORRUPTED_AT_ONCE, FORGIVEN_A_CYCLE = 3.0, 0.01
 """More malformed frames than this are a fault; one is forgiven every 100 cycles."""
 UNSENT_AT_ONCE = 3
 """Cycles in a row in which the interface took nothing that are a fault."""
-BUS_OFF_CLASS, CONTROLLER_CLASS, ACTIVE_AGAIN = 0x40, 0x04, 0x40
+SPARED_AFTER, SPARED_BUT = 250, 250
+"""After so many silent cycles only one in so many is sent: a socket to a host that is gone fills up, and then blocks."""
+PROBED_EVERY = 50
+"""Cycles from one doubt's settling to the next one's: a bus that loses frames must not lose many more cycles by it."""
+CONTROLLER_CLASS, ACTIVE_AGAIN = 0x04, 0x40
 _CLASSES = {
     0x001: "transmission timeout",
     0x002: "lost arbitration",
@@ -61,6 +65,8 @@ class Cycle:
         self._reason = ""
         self._was_late = False
         self._asked_s = 0.0
+        self._probing = False
+        self._probe_from = self._silent = 0
         self.cycles = self.late = 0
         self.round_trip_s = 0.0
 
@@ -69,8 +75,9 @@ class Cycle:
         began = self._clock()
         self._was_late = False
         self._drain()
-        probing = self._wants_probe()
-        sent = self._send(with_sync=not probing)
+        probing = self._probing = self._wants_probe()
+        spared = self._silent > SPARED_AFTER and self.cycles % SPARED_BUT != 0
+        sent = not spared and self._send(with_sync=not probing)
         self._asked_s = self._clock()
         asked = sent and not probing
         for answer in self._answers:
@@ -78,9 +85,10 @@ class Cycle:
         if sent:
             self._receive(began + self._window_s, asked)
         self._settle(probing)
+        self._silent = self._silent + 1 if all(answer.age for answer in self._answers) else 0
         self.cycles += 1
         self._corrupted = max(0.0, self._corrupted - FORGIVEN_A_CYCLE)
-        if self.cycles % self._heartbeat_every == 1 % self._heartbeat_every:
+        if not spared and self.cycles % self._heartbeat_every == 1 % self._heartbeat_every:
             self._send_one(self._heartbeat)
         return asked
 
@@ -111,7 +119,13 @@ class Cycle:
         """Return whether to leave SYNC out this time; not on top of a missed cycle, unless that is what ails."""
         if not any(answer.wants_probe for answer in self._answers):
             return False
-        return all(answer.age == 0 or answer.is_late for answer in self._answers)
+        if self._probing:
+            return True
+        is_due = self.cycles >= self._probe_from or any(answer.is_late for answer in self._answers)
+        if not is_due or not all(answer.age == 0 or answer.is_late for answer in self._answers):
+            return False
+        self._probe_from = self.cycles + PROBED_EVERY
+        return True
 
     def _settle(self, probing: bool) -> None:
         was_late = self._was_late
@@ -148,7 +162,7 @@ class Cycle:
                 if left <= 0.0:
                     return
                 continue
-            if self._handle(message) and asked and not any(answer.owed for answer in self._answers):
+            if self._handle(message) and asked and not any(answer.is_expected for answer in self._answers):
                 self.round_trip_s = self._clock() - self._asked_s
                 return
 
