@@ -13,7 +13,7 @@ from backend.loop.pacer import Pacer
 from backend.loop.pipe_end import PipeEnd
 from backend.loop.rig_commands import apply
 from backend.loop.rig_reports import EVERY_S, rig_report
-from backend.loop.rig_states import refusal
+from backend.loop.rig_states import DRIVEN, refusal
 from backend.loop.stamps import stamp
 from backend.loop.watchdogs import Watchdogs
 from backend.rigs.faults import LOOP_LATE, PROCESS_ENDED, STOP_REQUESTED
@@ -173,7 +173,7 @@ class RigLoop:
             return
         conduct.stop(PROCESS_ENDED.sentence())
         until = self._clock() + LEAVE_S
-        while conduct.on.axes.any_on and self._clock() < until:
+        while (conduct.state in DRIVEN or conduct.on.axes.any_on) and self._clock() < until:
             self._cycle(conduct, 0.0)
             self._report_when_due(conduct)
             self._pipe.send()
