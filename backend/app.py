@@ -22,12 +22,14 @@ from backend.api.problems import add_problem_handlers
 from backend.api.recording_origins import recording_origin_routes
 from backend.api.recordings import recording_routes
 from backend.api.resources import resources
+from backend.api.rigs import rig_routes
 from backend.compute.pool import Pool
 from backend.processes import set_niceness
 from backend.recordings.catalogue import Catalogue
 from backend.recordings.excerpts import Excerpts
 from backend.recordings.library import Library
 from backend.recordings.recorder import Recorder
+from backend.rigs.library import RigLibrary
 from backend.scene.process import SceneProcess
 from backend.scene.relay import scene_routes
 from backend.scene.replay import ReplayScene
@@ -48,7 +50,8 @@ def create_app(settings: Settings) -> FastAPI:
     pool = Pool()
     tasks = Tasks(pool.tasks)
     recorder = Recorder(settings)
-    session = Session(settings, pool, database, recorder, recorder, Excerpts(database))
+    rigs = RigLibrary(settings.rigs_folder)
+    session = Session(settings, pool, database, recorder, recorder, Excerpts(database), rigs)
     library = Library(settings, Catalogue(database), recorder, pool.archive)
     scene = SceneProcess(session.ring_name)
     replay = ReplayScene()
@@ -84,6 +87,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.include_router(resources(session, pool, answers.name))
     app.include_router(preset_routes(session))
     app.include_router(actuator_routes(session, pool))
+    app.include_router(rig_routes(session, pool, rigs))
     app.include_router(analysis(session, pool, tasks, answers.name))
     app.include_router(export(session, pool))
     app.include_router(recording_origin_routes(pool, tasks, library, answers.name))

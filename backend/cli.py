@@ -8,10 +8,15 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 from pydantic import ValidationError
 
+from backend.emulator.commands import emulator
+from backend.rigs.commands import rig
+
 if TYPE_CHECKING:
     from backend.settings import Settings
 
 app = typer.Typer(no_args_is_help=True, help="Tune the robust position control of a variable stiffness actuator.")
+app.add_typer(emulator, name="emulator")
+app.add_typer(rig, name="rig")
 
 
 def _settings(**given: Any) -> "Settings":

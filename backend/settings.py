@@ -23,7 +23,7 @@ class Settings(BaseSettings):
     allowed_hosts: tuple[str, ...] = Field((), description="Further names this server may be called by (Host header).")
     data_dir: Path = Field(
         Path(platformdirs.user_data_dir("vssea")),
-        description="Where the database, recordings and fault snapshots are kept.",
+        description="Where the database, recordings and files of rigs are kept.",
     )
     database: str | None = Field(
         None,
@@ -74,6 +74,11 @@ class Settings(BaseSettings):
     def recordings_folder(self) -> Path:
         """Folder of the recordings."""
         return self.recordings_dir or self.data_dir / "recordings"
+
+    @property
+    def rigs_folder(self) -> Path:
+        """Folder of the rigs' files."""
+        return self.data_dir / "rigs"
 
     @property
     def database_url(self) -> str:

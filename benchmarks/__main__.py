@@ -22,6 +22,21 @@ BENCHMARKS = {
         "benchmarks.recordings",
         "an hour's recording: written, opened, drawn, exported, beside the public mcap reader",
     ),
+    "emulator": (
+        "benchmarks.emulator",
+        "the emulated rig: SYNC to the last answer at 500 Hz and 1 kHz, processor time",
+    ),
+    "faults": (
+        "benchmarks.rigs.campaign",
+        "every fault in every activity on an emulated rig: time to safe torque, peaks",
+    ),
+    "rig": ("benchmarks.rigs.cycle", "the loop on an emulated CAN bus, 500 Hz and 1 kHz, for a minute each"),
+    "stop": ("benchmarks.rigs.stop_click", "STOP clicked in Chromium to zero torque at an emulated motor"),
+    "stiffness": (
+        "benchmarks.rigs.stiffness",
+        "stiffness 50, 800, 50 N m/rad while tracking, with and without its terms",
+    ),
+    "agreement": ("benchmarks.rigs.agreement", "the same scenario on the emulated rig and in simulation"),
     "loop": ("benchmarks.loop", "the 1 kHz loop for two minutes: lateness, overruns, lost samples, processor time"),
 }
 

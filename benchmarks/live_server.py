@@ -48,7 +48,7 @@ class Server:
     def processor_seconds(self) -> dict[str, float]:
         """Return the processor time so far of the web process and of each child, by name of its entry."""
         found = {"web": _processor_seconds(self.process.pid)}
-        for child in _children(self.process.pid):
+        for child in children(self.process.pid):
             found[Path(f"/proc/{child}/comm").read_text().strip()] = _processor_seconds(child)
         return found
 
@@ -89,8 +89,8 @@ def _wait_until_running(server: Server) -> None:
 
 
 @contextmanager
-def open_page(port: int) -> Iterator[None]:
-    """Keep the dashboard open in a headless Chromium."""
+def open_page(port: int) -> Iterator[Any]:
+    """Keep the dashboard open in a headless Chromium, and give its page."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as browser:
@@ -99,7 +99,7 @@ def open_page(port: int) -> Iterator[None]:
         )
         page = chromium.new_page(viewport={"width": 1366, "height": 768})
         page.goto(f"http://127.0.0.1:{port}/", wait_until="load", timeout=60_000)
-        yield
+        yield page
         chromium.close()
 
 
@@ -166,6 +166,7 @@ def _processor_seconds(pid: int) -> float:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def _children(pid: int) -> list[int]:
+def children(pid: int) -> list[int]:
+    """Return the process ids of the children of a process."""
     tasks = Path(f"/proc/{pid}/task").iterdir()  # a child belongs to the thread that started it
     return [int(child) for task in tasks for child in (task / "children").read_text().split()]

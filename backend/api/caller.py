@@ -1,4 +1,4 @@
-"""Who calls: the page that says so, else REST. It is for the log; what may be done does not depend on it."""
+"""Who calls: the page that says so, else REST. It is for the log; what may be done on a rig depends on the key alone."""
 
 import re
 from typing import Annotated
@@ -7,6 +7,7 @@ from fastapi import Depends, Request
 
 BY = "REST"
 HEADER = "X-VSSEA-Page"
+KEY_HEADER = "X-VSSEA-Lease"
 PAGE = re.compile(r"page \d{1,9}")
 
 
@@ -16,4 +17,10 @@ def by_of(request: Request) -> str:
     return named if PAGE.fullmatch(named) else BY
 
 
+def key_of(request: Request) -> str | None:
+    """Return the key that proves control of the rig, as `take_control` answered it; None without one."""
+    return request.headers.get(KEY_HEADER) or None
+
+
 By = Annotated[str, Depends(by_of)]
+Key = Annotated[str | None, Depends(key_of)]

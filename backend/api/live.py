@@ -37,6 +37,7 @@ class Page:
 
     def __init__(self, socket: WebSocket, session: Session, recorder: Recorder, name: str) -> None:
         self._socket, self._session, self._recorder, self.name = socket, session, recorder, name
+        self._key = ""
         self._messages: deque[dict[str, Any]] = deque(maxlen=QUEUED_MESSAGES)
         self._news = asyncio.Event()
         self._commands: set[asyncio.Task[None]] = set()
@@ -55,6 +56,7 @@ class Page:
     async def serve(self, history_s: float) -> None:
         """Greet, then send and receive until either side ends."""
         session = self._session
+        self._key = session.rig.control.join(self.name)
         session.listeners.add(self.post)
         sender = asyncio.create_task(self._send_all(history_s))
         receiver = asyncio.create_task(self._receive_all())
@@ -62,6 +64,7 @@ class Page:
             await asyncio.wait((sender, receiver), return_when=asyncio.FIRST_COMPLETED)
         finally:
             session.listeners.discard(self.post)
+            session.rig.leave(self._key)  # who has gone is not in control
             for task in (sender, receiver, *self._commands):
                 task.cancel()
             for ended in await asyncio.gather(sender, receiver, *self._commands, return_exceptions=True):
@@ -164,7 +167,7 @@ class Page:
                     429, "Too many at once", f"More than {COMMANDS_AT_ONCE} commands are waiting; send fewer."
                 )
             else:
-                result = await self._session.command(command, message.get("arguments"), self.name)
+                result = await self._session.command(command, message.get("arguments"), self.name, self._key)
         except Problem as problem:
             self.post({"type": "reply", "id": number, "ok": False, "problem": problem.document()})
         except Exception:  # every command is answered, else the page waits for nothing

@@ -4,7 +4,7 @@ from typing import Any
 
 from fastapi import APIRouter, Request
 
-from backend.api.caller import By
+from backend.api.caller import By, Key
 from backend.api.resources import body_named, body_of
 from backend.api.versioned import Saved, checked, versioned_routes
 from backend.presets.contents import PresetContent, PresetProvenance, live_preset
@@ -35,10 +35,10 @@ def preset_routes(session: Session) -> APIRouter:
     router = versioned_routes(session, session.presets.presets, SavedPreset, content_of)
 
     @router.post("/presets/{name}/apply", openapi_extra=body_named("version, paths"))
-    async def apply(name: str, request: Request, by: By) -> dict[str, Any]:
+    async def apply(name: str, request: Request, by: By, key: Key) -> dict[str, Any]:
         """Use a saved tuning in the live session: only what differs is sent."""
         body = await body_of(request)
         asked = checked(Applying, {"name": name} | body if isinstance(body, dict) else body)
-        return await session.command("apply_preset", asked.model_dump() | {"name": name}, by)
+        return await session.command("apply_preset", asked.model_dump() | {"name": name}, by, key)
 
     return router

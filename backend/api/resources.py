@@ -9,7 +9,7 @@ from fastapi.responses import FileResponse
 from pydantic import ValidationError
 from starlette.background import BackgroundTask
 
-from backend.api.caller import By
+from backend.api.caller import By, Key
 from backend.compute.pool import JobFailedError, JobRefusedError, Pool
 from backend.problem import Problem, from_validation, refused
 from backend.session.session import Session
@@ -111,9 +111,9 @@ def resources(session: Session, pool: Pool, folder: str) -> APIRouter:
         return session.history.last(last)
 
     @router.post("/session/{command}", openapi_extra=body_named("arguments of the command"))
-    async def command(command: str, request: Request, by: By) -> Document:
+    async def command(command: str, request: Request, by: By, key: Key) -> Document:
         """Run a command of the live session; docs/protocol.md lists them."""
-        return await session.command(command, await body_of(request), by)
+        return await session.command(command, await body_of(request), by, key)
 
     return router
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from backend.compute.analysis_jobs import analyse_loop, analysis_task, margins_of
 from backend.compute.calibration_job import calibrate
 from backend.compute.report_jobs import paper_task
+from backend.compute.trial_job import compared_tunings
 from backend.telemetry.frames import frames
 from backend.telemetry.ring import COLUMNS, EPOCH, PERIOD_S, WIDTH, Piece
 from vssea_core.analysis.refusal import unstable_because
@@ -37,6 +38,7 @@ __all__ = [
     "simulate_rows",
     "simulate_scenario",
     "simulate_to_file",
+    "try_tuning",
 ]
 
 LONG = frozenset({"analysis_task", "paper_task"})
@@ -95,6 +97,12 @@ def simulate_rows(scenario: Scenario, tuning_id: int, folder: str) -> str:
     with tempfile.NamedTemporaryFile(dir=folder, suffix=".npy", delete=False) as file:
         np.save(file, simulate(scenario, tuning_id).rows)
     return file.name
+
+
+def try_tuning(present: Scenario, candidate: Scenario) -> dict[str, Any]:
+    """Return how a tuning does beside the present one, with its margins. Raises ValueError if its own loop is unstable."""
+    refuse_unstable(candidate)
+    return compared_tunings(present, candidate) | {"margins": margins_of(candidate)}
 
 
 def export_controller(scenario: Scenario, form: str) -> tuple[str, bytes]:

@@ -69,6 +69,11 @@ class Worker:
         """End the process."""
         await self._end()
 
+    @property
+    def process_id(self) -> int | None:
+        """Number of the process, None if it does not run."""
+        return self._process.pid if self._process is not None else None
+
     async def _ready(self) -> None:
         # An idle worker says nothing: a readable pipe has lost its other end.
         if self._process is not None and self._process.is_alive() and not self._pipe.poll():
@@ -134,8 +139,8 @@ class Pool:
     """A worker for each kind of work, so that none waits for another.
 
     Designs that live changes wait for; the analysis that follows each change; simulations; long tasks; recordings that
-    somebody looks at; recordings that are summarised, exported and imported. The last two need no compiler, and start when
-    they are needed.
+    somebody looks at; recordings that are summarised, exported and imported; a look at a rig. The last three need no
+    compiler, and start when they are needed.
     """
 
     def __init__(self) -> None:
@@ -145,8 +150,16 @@ class Pool:
         self.tasks = Worker("vssea tasks", "analysis_task", niceness=15)
         self.recordings = Worker("vssea recordings", "", niceness=12, jobs="backend.recordings.jobs")
         self.archive = Worker("vssea archive", "", niceness=13, jobs="backend.recordings.jobs")
+        self.rig_check = Worker("vssea rig check", "", niceness=5, jobs="backend.compute.rig_jobs")
+
+    @property
+    def _workers(self) -> tuple[Worker, ...]:
+        return self.design, self.analysis, self.simulation, self.tasks, self.recordings, self.archive, self.rig_check
+
+    def process_ids(self) -> list[int]:
+        """Return the numbers of the processes that run."""
+        return [worker.process_id for worker in self._workers if worker.process_id is not None]
 
     async def stop(self) -> None:
         """End all of them."""
-        workers = (self.design, self.analysis, self.simulation, self.tasks, self.recordings, self.archive)
-        await asyncio.gather(*(worker.stop() for worker in workers))
+        await asyncio.gather(*(worker.stop() for worker in self._workers))

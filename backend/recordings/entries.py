@@ -19,7 +19,7 @@ def begin_head(run: Run) -> dict[str, str]:
     begun_ns = round(datetime.fromisoformat(run.wall_time).timestamp() * 1e3) * 1_000_000
     return {
         "id": run.wall_time.replace(":", "-").replace(".", "-"), "format": FORMAT, "vssea": __version__,
-        "begun_at": run.wall_time, "begin_ns": str(begun_ns), "epoch": str(run.epoch), "rig": "simulated", "origin": "live",
+        "begun_at": run.wall_time, "begin_ns": str(begun_ns), "epoch": str(run.epoch), "rig": run.rig, "origin": "live",
         "name": "", "scenario": run.scenario.name,
     }  # fmt: skip
 

@@ -12,6 +12,8 @@ from pydantic import Field, JsonValue, model_validator
 from vssea_core.fields import Part
 
 Sign = Literal[1, -1]
+SafetyObject = Literal[0x1016, 0x6007, 0x605A, 0x605E, 0x6072]
+"""Watch on this computer, reactions to lost connection, quick stop and fault, and the drive's own torque limit."""
 
 
 class Bus(Part):
@@ -45,18 +47,23 @@ class Drive(Part):
     quick_stop_deceleration: int | None = Field(
         None, ge=1, description="Object 0x6085 in the drive's unit; null = as it is."
     )
+    without: tuple[SafetyObject, ...] = Field(
+        (), description="Safety objects that this drive lacks and that you accept to be missing."
+    )
 
 
 class LinkEncoder(Part):
     """The encoder at the output: a CiA 406 node of its own, or the second encoder of a drive."""
 
-    source: Literal["node", "motor_drive", "stiffness_drive"] = "node"
+    source: Literal["node", "motor_drive", "stiffness_drive"] = Field(
+        "node", description="A node of its own, or the drive whose second encoder it is."
+    )
     node: int | None = Field(None, ge=1, le=127, description="CANopen node number, where source is node.")
     index: int = Field(0x6004, description="Object with the position: 0x6004 of CiA 406, the vendor's own on a drive.")
-    subindex: int = 0
-    bits: int = Field(32, description="Length of that object in the PDO.")
+    subindex: int = Field(0, ge=0, le=255, description="Its subindex.")
+    bits: Literal[8, 16, 32] = Field(32, description="Length of that object in the PDO.")
     counts_per_turn: int = Field(ge=4, description="Counts in a turn of the link.")
-    sign: Sign = 1
+    sign: Sign = Field(1, description="1 if positive counts are positive in the model.")
     zero: int = Field(0, description="Counts where the link's position is 0 rad.")
 
     @model_validator(mode="after")
@@ -110,8 +117,10 @@ class Homing(Part):
 class RigFile(Part):
     """One rig."""
 
-    name: str = Field(min_length=1, max_length=60, pattern=r"^[\w .+-]+$")
-    note: str = Field("", max_length=500)
+    name: str = Field(
+        min_length=1, max_length=60, pattern=r"^[\w .+-]+$", description="Of letters, digits, blanks and . + - _."
+    )
+    note: str = Field("", max_length=500, description="Shown beside the name.")
     actuator: str | None = Field(None, description="Name in the actuator library; null = the default actuator.")
     preset: str | None = Field(None, description="Preset to begin with; null = the tuning in force, if it fits.")
     rate_hz: Literal[100, 200, 250, 500, 1000] = Field(
@@ -120,12 +129,12 @@ class RigFile(Part):
     answer_share: float = Field(
         0.6, gt=0.1, lt=0.95, description="Share of a cycle in which the answers must be there."
     )
-    bus: Bus
-    motor: Drive
-    stiffness: Drive
-    link: LinkEncoder
-    limits: Limits
-    homing: Homing = Homing()
+    bus: Bus = Field(description="How the CAN bus is opened.")
+    motor: Drive = Field(description="The drive of the equilibrium motor.")
+    stiffness: Drive = Field(description="The drive of the stiffness motor.")
+    link: LinkEncoder = Field(description="The encoder at the output.")
+    limits: Limits = Field(description="What the rig stands.")
+    homing: Homing = Field(Homing(), description="How the stiffness axis finds itself.")
 
     @model_validator(mode="after")
     def _nodes_differ(self) -> Self:

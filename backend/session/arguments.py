@@ -13,6 +13,11 @@ class Arguments(BaseModel):
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
+    @property
+    def harmless(self) -> bool:
+        """Whether these arguments can neither move a rig nor change how it moves, whatever the command else does."""
+        return False
+
 
 class Nothing(Arguments):
     """No arguments."""

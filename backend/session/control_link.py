@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable
+from contextlib import suppress
 from itertools import count
 from multiprocessing.process import BaseProcess
 
@@ -10,7 +11,9 @@ from backend.problem import Problem, refused
 from backend.processes import CONTEXT, started
 
 ENTRY = "backend.loop.process:run_control_process"
+RIG_ENTRY = "backend.loop.rig_process:run_rig_process"
 ANSWER_LIMIT_S = 2.0
+FAREWELL_LIMIT_S = 10.0
 START_LIMIT_S = 120.0
 LEAVE_LIMIT_S = 3.0
 
@@ -28,16 +31,17 @@ class ControlLink:
         self._process: BaseProcess | None = None
         self._ready: asyncio.Future[None] | None = None
 
-    async def start(self, ring_name: str, flag_name: str, epoch: int) -> None:
+    async def start(self, *shared: str, epoch: int, entry: str = ENTRY) -> None:
         """Start the process and return when its kernels are compiled; its first run is the one after `epoch`.
+
+        `shared` are the names of its shared memory: ring, stop flag and, for a rig, signs of life.
 
         Raises Problem if it ends or takes too long.
         """
         await self.stop()  # never two writers
         self._ready = asyncio.get_running_loop().create_future()
         self._pipe, theirs = CONTEXT.Pipe()
-        arguments = (ring_name, flag_name, epoch, theirs)
-        self._process = await asyncio.to_thread(started, "vssea control", ENTRY, *arguments)
+        self._process = await asyncio.to_thread(started, "vssea control", entry, *shared, epoch, theirs)
         theirs.close()
         asyncio.get_running_loop().add_reader(self._pipe.fileno(), self._receive)
         try:
@@ -47,7 +51,7 @@ class ControlLink:
             self._process.kill()
             raise _silent() from error
 
-    async def command(self, command: Command) -> Done:
+    async def command(self, command: Command, limit_s: float = ANSWER_LIMIT_S) -> Done:
         """Return when the command took effect. Raises Problem if it was refused or the process does not answer."""
         if self._ready is None or not self._ready.done():
             raise Problem(503, "Starting", "The session is still starting; try again in a moment.")
@@ -56,7 +60,7 @@ class ControlLink:
         self._waiting[number] = future
         try:
             self._pipe.send((number, command))
-            async with asyncio.timeout(ANSWER_LIMIT_S):
+            async with asyncio.timeout(limit_s):
                 return await future
         except (OSError, TimeoutError) as error:
             raise _silent() from error
@@ -68,11 +72,14 @@ class ControlLink:
         """Whether the process has ended by itself: its end of the pipe is closed."""
         return self._process is not None and self._pipe.closed
 
-    async def stop(self) -> None:
-        """Close the pipe, which ends the process, and make sure that it ended."""
-        process, self._process = self._process, None
+    async def stop(self, farewell: Command | None = None) -> None:
+        """Close the pipe, which ends the process, and make sure that it ended; `farewell` is said before, if it listens."""
+        process, self._process = self._process, None  # from here on its end is no loss
         if process is None:
             return
+        if farewell is not None:
+            with suppress(Problem):
+                await self.command(farewell, FAREWELL_LIMIT_S)
         self._close()
         await asyncio.to_thread(process.join, LEAVE_LIMIT_S)
         if process.exitcode is None:
@@ -101,7 +108,7 @@ class ControlLink:
             if isinstance(report, Done):
                 future.set_result(report)
             else:
-                future.set_exception(refused(f"{report.sentence[:1].upper()}{report.sentence[1:]}."))
+                future.set_exception(refused(f"{report.sentence[:1].upper()}{report.sentence[1:].rstrip('.')}."))
             return
         asyncio.get_running_loop().call_soon(self._listener, report)
 
@@ -112,4 +119,4 @@ class ControlLink:
 
 
 def _silent() -> Problem:
-    return Problem(503, "No answer", "The control process does not answer; restart the server if this stays so.")
+    return Problem(503, "No answer", "The control process does not answer; press Reset, or restart the server.")

@@ -1,16 +1,19 @@
-"""What the control process reports: its state, changes that the sequence made, and its end."""
+"""What the control process reports: its state, changes that the sequence made, how a rig is, and its end."""
 
-import asyncio
 from typing import TYPE_CHECKING
 
 from backend.loop import messages
 from backend.session.events import Severity
-from backend.session.fault_snapshot import save_fault_snapshot
 
 if TYPE_CHECKING:
     from backend.session.session import Session
 
-KEPT_OF_FAULT_S = 2.0
+
+LOST = "the control process ended unexpectedly. Press Reset to start it anew."
+RIG_LOST = (
+    "the control process ended unexpectedly; the drives stop the rig by their own watchdogs. Press Reset to connect it anew, "
+    "or disconnect."
+)
 
 
 class ControlReports:
@@ -23,14 +26,22 @@ class ControlReports:
         """Take a report that answers no command."""
         if isinstance(report, messages.Followed):
             self._session.parts.follow(report)
-        if isinstance(report, messages.Changed):
-            self._take_state(report)
+        elif isinstance(report, messages.Changed):
+            if report.state == "fault" or not self._session.rig.state.leaving:
+                self._take_state(report)
+        elif isinstance(report, messages.RigReport):
+            self._session.rig.take(report)
+        elif isinstance(report, messages.Moved):
+            self._session.rig.moved(report)
 
     def lost(self) -> None:
         """Take the unexpected end of the control process."""
         session = self._session
-        session.status.fail("the control process ended unexpectedly. Press Reset to start it anew.")
-        session.note("fault", session.status.sentence(session.scenario), "server", "fault")
+        if session.rig.state.connecting:
+            return  # who connects hears it as the answer
+        session.status.fail(RIG_LOST if session.rig.connected else LOST)
+        session.rig.lost()
+        session.note("fault", session.sentence(), "server", "fault")
         session.tell_state()
 
     def _take_state(self, report: messages.Changed) -> None:
@@ -39,19 +50,6 @@ class ControlReports:
         state = session.status.state
         severity: Severity = "fault" if state == "fault" else "warning" if state == "stopped" else "info"
         by = session.status.stopped_by or "server" if state == "stopped" else "session"
-        session.note("fault" if state == "fault" else "state", session.status.sentence(session.scenario), by, severity)
+        session.rig.changed(report)
+        session.note("fault" if state == "fault" else "state", session.sentence(), by, severity)
         session.tell_state()
-        if state == "fault":
-            session.spawn(self._keep_fault())
-
-    async def _keep_fault(self) -> None:
-        session = self._session
-        period_s = session.scenario.timing.sample_time_s
-        file = await asyncio.to_thread(
-            save_fault_snapshot,
-            session.settings.data_dir,
-            session.ring.last(round(KEPT_OF_FAULT_S / period_s)),
-            session.scenario,
-            session.status.reason,
-        )
-        session.note("fault", f"The last {KEPT_OF_FAULT_S:g} s before the fault are kept in {file}", "server")

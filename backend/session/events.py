@@ -21,6 +21,8 @@ Kind = Literal[
     "pin",
     "trigger",
     "recording",
+    "rig",
+    "control",
 ]
 Severity = Literal["info", "warning", "fault"]
 KEPT = 500

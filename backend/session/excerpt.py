@@ -1,4 +1,4 @@
-"""A marked span of a recording: a pinned run, or what a trigger captured; and who keeps them."""
+"""A marked span of a recording: a pinned run, what a trigger captured, or what led to a fault; and who keeps them."""
 
 from dataclasses import asdict, dataclass, field, replace
 from itertools import count
@@ -7,14 +7,14 @@ from typing import Any, Literal, Protocol
 
 @dataclass(frozen=True)
 class Excerpt:
-    """The span [from_s, to_s] of the run that `recording` holds; `at_s` is what fired a trigger.
+    """The span [from_s, to_s] of the run that `recording` holds; `at_s` is what fired a trigger, or the fault.
 
     `period_s` is the period of the reference then, `words` how its tuning differs from that of the excerpt before it,
     `metrics` are figures of the span by name, `tuning` is the tuning as JSON takes it.
     """
 
     recording: str | None
-    kind: Literal["pin", "trigger"]
+    kind: Literal["pin", "trigger", "fault"]
     label: str
     from_s: float
     to_s: float

@@ -1,5 +1,6 @@
 """What the ring says of a session: loop timing, live metrics, limits, pace. Cheap: a few numpy passes twice a second."""
 
+import math
 import time
 from collections import deque
 from collections.abc import Callable
@@ -22,8 +23,8 @@ class Health:
         self._ring, self._clock = ring, clock
         self._marks: deque[tuple[float, int]] = deque(maxlen=8)
 
-    def figures(self, period_s: float, epoch: int) -> dict[str, Any]:
-        """Return the parts of a snapshot that come from the ring."""
+    def figures(self, period_s: float, epoch: int, free_core: int | None = None) -> dict[str, Any]:
+        """Return the parts of a snapshot that come from the ring; `free_core` is the one that the workers stay off."""
         window = self._ring.last(round(WINDOW_S / period_s)).samples
         window = window[window[:, EPOCH] == epoch]
         recent = window[-max(1, round(RECENT_S / period_s)) :]
@@ -35,11 +36,12 @@ class Health:
                 "execution_us": _percentiles(window[:, EXECUTION_US]),
                 "overruns": self._ring.overruns,
                 "scheduling": "real-time" if self._ring.real_time else "best effort",
+                "free_core": free_core,
             },
             "limits": _active_limits(recent),
             "metrics": {"window_s": WINDOW_S, "items": _metric_items(window[:, :WIDTH])},
-            "stiffness": None if newest is None else float(newest[INDEX["stiffness"]]),
-            "deflection": None if newest is None else float(newest[INDEX["deflection"]]),
+            "stiffness": None if newest is None else _known(newest[INDEX["stiffness"]]),
+            "deflection": None if newest is None else _known(newest[INDEX["deflection"]]),
             "achieved": self._achieved(period_s),
         }
 
@@ -57,6 +59,11 @@ def _percentiles(values: Samples) -> dict[str, float]:
     return {"p50": round(float(p50), 2), "p99": round(float(p99), 2), "worst": round(float(worst), 2)}
 
 
+def _known(value: float) -> float | None:
+    """Return a figure, None for what a rig cannot know, such as the true disturbance."""
+    return float(value) if math.isfinite(value) else None
+
+
 def _active_limits(samples: Samples) -> list[str]:
     bits = int(np.bitwise_or.reduce(samples[:, INDEX["limits"]].astype(np.int64))) if len(samples) else 0
     return [limit.sentence for limit in LIMITS if bits & limit.bit]
@@ -66,7 +73,7 @@ def _metric_items(rows: Samples) -> list[dict[str, Any]]:
     return [
         {
             "name": metric.name, "label": metric.label, "unit": metric.unit, "description": metric.description,
-            "value": metric.compute(rows) if len(rows) else 0.0,
+            "value": _known(metric.compute(rows)) if len(rows) else 0.0,
         }
         for metric in METRICS
     ]  # fmt: skip

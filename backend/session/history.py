@@ -102,6 +102,11 @@ class History(Generic[State]):
         """The change that redo would make again, None if there is none."""
         return self._taken_back[-1] if self._taken_back else None
 
+    def forget(self) -> None:
+        """Forget all entries: what they lead back to belongs to another rig. Their numbers go on."""
+        for entries in (self._entries, self._done, self._taken_back):
+            entries.clear()
+
     def undo(self) -> Entry[State]:
         """Mark the newest change in force as undone and return it; IndexError if there is none."""
         entry = self._done.pop()

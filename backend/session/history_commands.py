@@ -53,7 +53,9 @@ class HistoryCommands:
         self._record_whole(by, before, before.beginning, self._session.running.beginning, 0.0)
 
     def begin(self) -> None:
-        """Mark where the session began."""
+        """Begin anew, and mark where: what was before, with another rig, cannot be returned to."""
+        self._history.forget()
+        self._session.tell({"type": "history", "entries": [], "anew": True, **self._possible()})
         self._history.save_point(START, "server", self.state(), self._stamp(0.0))
 
     def greeting(self) -> Message:
@@ -129,7 +131,7 @@ class HistoryCommands:
             at_s = await self._put(state.now, CHANGEABLE, by)
         session.preset = state.preset
         session.tell(session.document(by))
-        session.save_soon()
+        session.kept.soon()
         return at_s
 
     async def _put(self, source: Scenario, parts: tuple[str, ...], by: str) -> float:

@@ -20,6 +20,8 @@ class Run:
     scenario: Scenario
     tuning_id: int
     wall_time: str
+    rig: str = "simulated"
+    """Of which kind: simulated, emulated or real."""
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,8 @@ from backend.problem import Problem
 if TYPE_CHECKING:
     from backend.session.session import Session
 
+SAVE_AFTER_S = 1.0
+
 
 class KeptRun:
     """Reads the last run at the start, writes the present one as it changes."""
@@ -17,6 +19,7 @@ class KeptRun:
     def __init__(self, presets: Documents, session: "Session") -> None:
         self._presets, self._session = presets, session
         self._was_read = False
+        self._timer: asyncio.TimerHandle | None = None
         self._told: str | None = None
 
     async def read(self) -> Last | None:
@@ -29,6 +32,25 @@ class KeptRun:
             return None
         self._was_read = True
         return last
+
+    def soon(self) -> None:
+        """Keep what runs once changes rest; what runs on a rig is not begun with again."""
+        if self._session.rig.file is not None:
+            return
+        if self._timer is not None:
+            self._timer.cancel()
+        session = self._session
+        self._timer = asyncio.get_running_loop().call_later(SAVE_AFTER_S, lambda: session.spawn(self._rested()))
+
+    async def now(self) -> None:
+        """Keep at once what waits to be kept."""
+        if self._timer is not None:
+            self._timer.cancel()
+            await self._rested()
+
+    async def _rested(self) -> None:
+        self._timer = None
+        await self.write()
 
     async def write(self) -> None:
         """Keep what runs, unless the last run could not be read."""

@@ -62,13 +62,14 @@ class PartCommands:
         new = with_changes(session.scenario, part, asked)
         found = part_differences(session.scenario, new, part)
         if found:
+            session.rig.check(new, [part])
             before = session.history.state()
             prepared = await self._prepared(new, [part])
             time_s = await self._apply(new, part, prepared, asked, by)
             session.history.record(by, part, found, before, time_s)
             self._notes.add(part, by, found, session.status.epoch, time_s)
             session.tell(session.document(by))
-            session.save_soon()
+            session.kept.soon()
         return found
 
     async def put(self, new: Scenario, parts: list[str], by: str) -> float:
@@ -77,12 +78,13 @@ class PartCommands:
         Returns the time [s] from which all are in force. Raises Problem if they do not fit together.
         """
         session = self._session
+        session.rig.check(new, parts)
         prepared = await self._prepared(new, parts)
         time_s = session.status.time_s
         for part in parts:
             time_s = await self._apply(new, part, prepared, Changes(replace=part_document(new, part)), by)
         session.tell(session.document(by))
-        session.save_soon()
+        session.kept.soon()
         return time_s
 
     async def _prepared(self, new: Scenario, parts: list[str]) -> Any:
@@ -95,9 +97,11 @@ class PartCommands:
         session = self._session
         found = part_differences(session.scenario, new, part)
         done = await self._send(new, part, prepared)
+        in_force = session.rig.moves.adopt(part, new)
         session.running.adopt(part, new, asked)
         session.margins.ask(session.scenario, session.status.tuning_id)
-        self.tell_journal(part, found, by, done.time_s)
+        if in_force:
+            self.tell_journal(part, found, by, done.time_s)
         await self._plan_sequence()
         return done.time_s
 

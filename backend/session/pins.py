@@ -2,8 +2,9 @@
 
 import asyncio
 import logging
+import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from backend.problem import Problem
 from backend.session.arguments import ExcerptChange, ExcerptNumber, PinnedSpan
@@ -23,8 +24,8 @@ logger = logging.getLogger(__name__)
 Message = dict[str, Any]
 LONGEST_LABEL = 200
 MOST_PINS = 20
-MOST_TRIGGERED = 20
-"""Of what triggers captured, the oldest gives way; a pin is never dropped unasked."""
+MOST_CAPTURED = 20
+"""Of what triggers captured, and of faults, the oldest gives way; a pin is never dropped unasked."""
 
 
 class Pins:
@@ -75,16 +76,23 @@ class Pins:
         session.note("pin", f"pinned {kept.label}", by)
         return kept.document()
 
-    async def keep_capture(self, label: str, by: str, epoch: int, from_s: float, to_s: float, at_s: float) -> Excerpt:
-        """Keep what a trigger captured. Raises Problem if it cannot be kept."""
+    async def keep_capture(
+        self,
+        label: str,
+        by: str,
+        epoch: int,
+        from_s: float,
+        to_s: float,
+        at_s: float,
+        kind: Literal["trigger", "fault"] = "trigger",
+    ) -> Excerpt:
+        """Keep what a trigger captured, or what lies around a fault. Raises Problem if it cannot be kept."""
         excerpt = await self._excerpt(epoch, from_s, to_s, by)
-        captured = [old.id for old in self._excerpts.values() if old.kind == "trigger"]
-        for number in captured[: len(captured) + 1 - MOST_TRIGGERED]:
+        captured = [old.id for old in self._excerpts.values() if old.kind == kind]
+        for number in captured[: max(0, len(captured) + 1 - MOST_CAPTURED)]:
             await self._remove(number)
-        recording = self._recordings.of_run(epoch)
-        return await self._keep(
-            replace(excerpt, recording=recording, kind="trigger", label=label, at_s=at_s, shown=False)
-        )
+        recording, label = self._recordings.of_run(epoch), label[:LONGEST_LABEL]
+        return await self._keep(replace(excerpt, recording=recording, kind=kind, label=label, at_s=at_s, shown=False))
 
     async def change(self, asked: ExcerptChange, by: str) -> Message:
         """Give it another label, or show or hide it."""
@@ -141,7 +149,8 @@ class Pins:
         samples = self._session.ring.last(round(behind_s / sample_time_s)).samples
         time = samples[:, INDEX["time"]]
         rows = samples[(samples[:, EPOCH] == epoch) & (time >= from_s) & (time <= to_s)][:, :WIDTH]
-        return {metric.name: metric.compute(rows) for metric in METRICS} if len(rows) else {}
+        figures = {metric.name: metric.compute(rows) for metric in METRICS} if len(rows) else {}
+        return {name: value for name, value in figures.items() if math.isfinite(value)}
 
     def _tell(self) -> None:
         self._session.tell(self.message())

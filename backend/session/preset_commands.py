@@ -47,7 +47,7 @@ class PresetCommands:
         found = difference.found
         if found.fit.model is not None and found.part == session.scenario.tuning:
             session.preset = InForce.of(found)
-            session.save_soon()
+            session.kept.soon()
         session.tell(session.document(by))
         count = f"{len(changes)} change{'s' if len(changes) != 1 else ''}"
         session.note("preset", f"preset {asked.name} applied, version {found.version.number}: {count}", by)
@@ -59,8 +59,9 @@ class PresetCommands:
         return {}
 
     async def load_plant(self, name: str, version: int | None, by: str) -> Message:
-        """Load the live scenario anew with a saved actuator as its plant."""
+        """Load the live scenario anew with a saved actuator as its plant; on a rig this is refused."""
         session = self._session
+        session.commands.permit("load_scenario", None)
         found = await asyncio.to_thread(self.actuators.get, name, version)
         document = session.beginning.model_dump(mode="json") | {"actuator": found.part.model_dump(mode="json")}
         answer = await session.load_scenario(Loading(scenario=validated(document)), by)
@@ -105,7 +106,7 @@ class PresetCommands:
         if documents is self.presets:
             session.preset = self._in_force(found)
             session.tell(session.document(by))
-            session.save_soon()
+            session.kept.soon()
         session.note("preset", f"{documents.kind.name} {found.document.name}: {words}", by)
 
     def _in_force(self, found: Found) -> InForce | None:

@@ -36,25 +36,32 @@ class RunCommands:
             session.preset = None
             session.history.record_load(by, before)
             session.tell(session.document(by))
-            session.save_soon()
+            session.kept.soon()
         session.note("scenario", f"scenario {scenario.name} loaded", by)
         return {"tuning_id": session.status.tuning_id}
 
-    async def load(self, scenario: Scenario) -> None:
-        """Begin a run of a scenario; the caller has the session's turn. Raises Problem, and the old one goes on."""
+    async def load(self, scenario: Scenario, run: bool | None = None) -> None:
+        """Begin a run of a scenario, at once if the old one ran unless `run` says; the caller has the session's turn.
+
+        Raises Problem, and the old one goes on.
+        """
         session = self._session
         prepared = await planned(session.design, scenario)
-        run = session.status.state in ("starting", "running")
+        if run is None:
+            run = session.status.state in ("starting", "running")
         await session.link.command(messages.Load(scenario, prepared, session.status.tuning_id + 1, run))
         session.status.tuning_id += 1
         session.running.load(scenario)
         session.margins.ask(scenario, session.status.tuning_id)
-        self._begun()
+        self.begun()
         session.tell(session.document())
 
     async def reset(self, _: Nothing, by: str) -> Message:
-        """Back to t = 0; the only way out of a stop or a fault."""
+        """Back to t = 0; the only way out of a stop or a fault. A rig's time goes on."""
         session = self._session
+        if session.rig.connected:
+            await session.rig.commands.reset(by)
+            return {}
         async with session.turn:
             if session.link.ended:
                 await session.start_control()
@@ -63,7 +70,7 @@ class RunCommands:
                 await self.load(session.running.beginning)  # what the sequence changed goes back to what it was
             else:
                 await session.link.command(messages.Reset())
-                self._begun()
+                self.begun()
         session.status.stopped_by = None
         session.note("state", "reset to t = 0", by)
         return {}
@@ -93,14 +100,16 @@ class RunCommands:
         return {}
 
     async def stop(self, _: Nothing, by: str) -> Message:
-        """Motor torque off at once, stiffness held. Passes every queue: it only writes the flag."""
+        """Motor torque off at once (a rig brakes first), stiffness held. Passes every queue: it only writes the flag."""
         session = self._session
         session.flag.raise_()
         if session.status.state not in ("stopped", "fault"):
             session.status.stopped_by = by
         return {}
 
-    def _begun(self) -> None:
+    def begun(self) -> None:
+        """Tell the journal that a run began."""
         session = self._session
         status = session.status
-        session.journal.begin(Run(status.epoch, session.running.beginning, status.tuning_id, wall_time()))
+        run = Run(status.epoch, session.running.beginning, status.tuning_id, wall_time(), session.rig.state.kind)
+        session.journal.begin(run)

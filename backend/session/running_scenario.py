@@ -41,6 +41,11 @@ class RunningScenario:
         self.now = self.now.model_copy(update={part: getattr(new, part)})
         self.beginning = begun_with(self.beginning, part, asked) if self.now.sequence else self.now
 
+    def put(self, part: str, source: Scenario) -> None:
+        """Take over one part of another scenario, beyond a reset too."""
+        self.now = self.now.model_copy(update={part: getattr(source, part)})
+        self.beginning = self.beginning.model_copy(update={part: getattr(source, part)})
+
     def words_of_entry(self, index: int, before: Scenario) -> list[str]:
         """Return each change that stands at a place of the sequence as words; `before` is the scenario until then."""
         changed = self.now.sequence[index].changes.items()

@@ -15,7 +15,7 @@ def state_sentence(state: State, reason: str | None, time_s: float, by: str | No
     following = reference_words(scenario.reference)
     match state:
         case "starting":
-            return "Starting: the control kernel is being compiled (some seconds at the first start)"
+            return reason or "Starting: the control kernel is being compiled (some seconds at the first start)"
         case "ready":
             return "Ready at t = 0. Press Run to start"
         case "running":
@@ -26,6 +26,8 @@ def state_sentence(state: State, reason: str | None, time_s: float, by: str | No
             return f"Stopped by {by or 'request'} at {time_s:.1f} s: motor torque off, stiffness held. Reset to go on"
         case "fault":
             return f"Fault: {reason}"
+        case _:
+            return f"{state.capitalize()}"  # a rig's own; rig_sentences has the words
 
 
 def reference_words(reference: Reference) -> str:

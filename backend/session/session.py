@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import time
 import uuid
 from collections.abc import Awaitable, Callable
 from itertools import count
@@ -27,6 +28,8 @@ from backend.session.live_margins import LiveMargins
 from backend.session.part_commands import PartCommands
 from backend.session.pins import Pins
 from backend.session.preset_commands import PresetCommands
+from backend.session.rig_connection import NoRigs, RigFiles
+from backend.session.rig_session import RigSession
 from backend.session.run_commands import RunCommands
 from backend.session.running_scenario import RunningScenario
 from backend.session.status import Status
@@ -42,12 +45,11 @@ logger = logging.getLogger(__name__)
 
 WATCH_S = 0.1
 STATE_EVERY = 5  # watches between two state messages
-SAVE_AFTER_S = 1.0
 Message = dict[str, Any]
 
 
 class Session:
-    """One live session on a simulated rig."""
+    """One live session: simulated, or on a rig."""
 
     def __init__(
         self,
@@ -57,6 +59,8 @@ class Session:
         journal: Journal | None = None,
         recordings: Recordings | None = None,
         excerpts: ExcerptStore | None = None,
+        rigs: RigFiles | None = None,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.settings, self._pool = settings, pool
         self.design = pool.design
@@ -77,11 +81,11 @@ class Session:
         self.margins = LiveMargins(pool.analysis, self.tell)
         self.turn = asyncio.Lock()
         self._tasks: set[asyncio.Task[None]] = set()
-        self._save_timer: asyncio.TimerHandle | None = None
         self.parts, self.runs = PartCommands(self), RunCommands(self)
         self.presets = PresetCommands(database, self)
-        self._kept = KeptRun(self.presets.presets, self)
+        self.kept = KeptRun(self.presets.presets, self)
         self.history = HistoryCommands(self)
+        self.rig = RigSession(self, pool, rigs or NoRigs(), clock)
         self.pins = Pins(self, recordings or NoRecordings(), excerpts or ExcerptsInMemory())
         self.trigger = Trigger(self)
         self.commands = Commands(self)
@@ -111,16 +115,15 @@ class Session:
             task.cancel()
         await self.margins.stop()
         await asyncio.gather(*self._tasks, return_exceptions=True)
-        if self._save_timer is not None:
-            self._save_timer.cancel()
-            await self._kept.write()
+        await self.kept.now()
+        await self.rig.close()
         await self.link.stop()
         self.ring.close()
         self.flag.close()
         self._segment.close()
 
     async def _begin(self) -> None:
-        last = await self._kept.read()
+        last = await self.kept.read()
         if last is not None:
             self.running.load(last.scenario)
             self.preset = last.preset
@@ -144,7 +147,7 @@ class Session:
 
     async def start_control(self) -> None:
         """Start the control process; nothing runs in it yet. Raises Problem if it ends or takes too long."""
-        await self.link.start(self.ring_name, self.flag.name, self.status.epoch)
+        await self.link.start(self.ring_name, self.flag.name, epoch=self.status.epoch)
 
     async def _warm_workers(self) -> None:
         """Start the workers beside the control process; a worker that fails to start is tried again when it is needed."""
@@ -163,6 +166,7 @@ class Session:
             for epoch, time_s, sentence in self._loads.passed(self.scenario.disturbances):
                 self.log.add("disturbance", sentence, "scenario", epoch, time_s)
             self.trigger.watch()
+            self.rig.watch()
             if turn % STATE_EVERY == 0 and self.listeners:
                 self.tell_state()
 
@@ -184,8 +188,14 @@ class Session:
     def snapshot(self) -> Message:
         """Return the state in words and figures, as docs/protocol.md has it."""
         self.status.follow(self.ring.latest())
-        figures = self._health.figures(self.scenario.timing.sample_time_s, self.status.epoch)
-        return self.status.snapshot(self.scenario, figures, len(self.listeners))
+        period_s, core = self.scenario.timing.sample_time_s, self.rig.cores.core
+        figures = self._health.figures(period_s, self.status.epoch, core)
+        return self.status.snapshot(self.sentence(), self.rig.document(self.scenario), figures, len(self.listeners))
+
+    def sentence(self) -> str:
+        """Return what the session is doing, and why."""
+        on_rig = self.rig.file is not None
+        return self.status.rig_sentence(self.rig.state) if on_rig else self.status.sentence(self.scenario)
 
     def document(self, by: str = "server") -> Message:
         """Return the live scenario and its preset."""
@@ -227,9 +237,9 @@ class Session:
 
     # ---- commands
 
-    async def command(self, name: str, arguments: Any, by: str) -> Message:
-        """Run the command `name` for page `by`. Raises Problem."""
-        return await self.commands.run(name, arguments, by)
+    async def command(self, name: str, arguments: Any, by: str, key: str | None = None) -> Message:
+        """Run the command `name` for page `by`; `key` proves that it is in control of a rig. Raises Problem."""
+        return await self.commands.run(name, arguments, by, key)
 
     def command_names(self) -> list[str]:
         """Return the names of all commands."""
@@ -242,13 +252,3 @@ class Session:
     async def load_scenario(self, asked: Loading, by: str) -> Message:
         """Restart with another scenario, as the command does."""
         return await self.runs.load_scenario(asked, by)
-
-    def save_soon(self) -> None:
-        """Keep what runs for the next start, once changes rest."""
-        if self._save_timer is not None:
-            self._save_timer.cancel()
-        self._save_timer = asyncio.get_running_loop().call_later(SAVE_AFTER_S, lambda: self.spawn(self._save()))
-
-    async def _save(self) -> None:
-        self._save_timer = None
-        await self._kept.write()

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from backend.loop.messages import Changed, State
+from backend.session.rig_sentences import rig_sentence
+from backend.session.rig_state import RigState
 from backend.session.sentences import state_sentence
 from backend.telemetry.ring import EPOCH, Samples
 from vssea_core.channels import INDEX
@@ -39,16 +41,20 @@ class Status:
             self.time_s = max(self.time_s, float(newest[INDEX["time"]]))
 
     def sentence(self, scenario: Scenario) -> str:
-        """Return what the session is doing, and why."""
+        """Return what a simulated session is doing, and why."""
         return state_sentence(self.state, self.reason, self.changed_at_s, self.stopped_by, scenario)
 
-    def snapshot(self, scenario: Scenario, figures: dict[str, Any], pages: int) -> dict[str, Any]:
-        """Return state and `figures` of the ring as docs/protocol.md has them."""
+    def rig_sentence(self, rig: RigState) -> str:
+        """Return what a rig is doing, and why."""
+        return rig_sentence(self.state, self.reason, self.changed_at_s, self.stopped_by, rig)
+
+    def snapshot(self, sentence: str, rig: dict[str, Any], figures: dict[str, Any], pages: int) -> dict[str, Any]:
+        """Return the state, `rig` with who is in control, and `figures` of the ring as docs/protocol.md has them."""
         return {
             "state": self.state,
-            "sentence": self.sentence(scenario),
+            "sentence": sentence,
             "reason": self.reason,
-            "rig": {"kind": "simulated", "label": "simulated rig"},
+            **rig,
             "time_s": self.time_s,
             "epoch": self.epoch,
             "tuning_id": self.tuning_id,

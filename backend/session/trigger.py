@@ -100,7 +100,7 @@ class Trigger:
         if fired is None or armed is None or newest is None:
             return
         now_s = float(newest[INDEX["time"]])
-        is_over = int(newest[EPOCH]) != fired.epoch or self._session.status.state == "fault"
+        is_over = int(newest[EPOCH]) != fired.epoch or self._run_has_ended()
         to_s = fired.at_s + armed.after_s
         if now_s < to_s and not is_over:
             return
@@ -108,6 +108,10 @@ class Trigger:
             to_s = min(to_s, self._end_of(fired.epoch, fired.at_s))
         self._state = "captured"
         self._session.spawn(self._capture(fired, armed, to_s))
+
+    def _run_has_ended(self) -> bool:
+        """Return whether no more samples come: a simulation ends at a fault, a rig is measured on."""
+        return self._session.status.state == "fault" and not self._session.rig.connected
 
     def _end_of(self, epoch: int, at_least_s: float) -> float:
         """Return the time of the last sample of a run that the ring still has."""

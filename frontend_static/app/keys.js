@@ -22,6 +22,7 @@ export const KEYS = [
   { key: "2", shown: "2", does: "viewAnalyse", text: "View: Analyse" },
   { key: "4", shown: "4", does: "viewRecordings", text: "View: Recordings" },
   { key: "5", shown: "5", does: "viewPresets", text: "View: Presets" },
+  { key: "6", shown: "6", does: "viewHardware", text: "View: Hardware" },
   { key: "?", shown: "?", does: "showKeys", text: "These keys" },
 ];
 
@@ -32,6 +33,7 @@ export const ROW_KEYS = [
   { shown: "Double click", text: "On a name or slider: back to the preset’s value. On a plot: follow again" },
   { shown: "Wheel", text: "Over a y axis: scale it. Over a recording’s plot: zoom; with Shift, move along" },
   { shown: "↑ ↓", text: "In the list of recordings: another one; Enter opens it, Space lays it over the one that you open" },
+  { shown: "← → ↑ ↓", text: "Held on the jog pad: link left and right, stiffer and softer; letting go stops" },
   { shown: "← →", text: "On the bar of a replay: back and forth" },
 ];
 

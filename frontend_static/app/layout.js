@@ -221,6 +221,7 @@ export const PANELS = [
       { name: "observer_bandwidth", short: "observer" },
       { name: "reference_bandwidth", short: "reference filter" },
       { name: "torque_reserve", short: "torque reserve" },
+      { name: "terms", short: "terms known" },
     ],
   },
   {

@@ -39,6 +39,9 @@ class Workers:
     def __init__(self) -> None:
         self.design = self.analysis = self.simulation = self.tasks = OnTheSpot()
 
+    def process_ids(self) -> list[int]:
+        return []
+
 
 class BenchLink:
     """Hands each command to the loop, turns it once, and reports in the order in which the loop did."""
@@ -52,10 +55,10 @@ class BenchLink:
         self.ended = False
         self._number = 0
 
-    async def start(self, *_: Any) -> None:
+    async def start(self, *_: Any, **__: Any) -> None:
         """The loop is there."""
 
-    async def command(self, command: messages.Command) -> messages.Done:
+    async def command(self, command: messages.Command, limit_s: float = 0.0) -> messages.Done:
         self._number += 1
         self._pipe.inbox.append((self._number, command))
         answer = self.turn()
@@ -78,7 +81,7 @@ class BenchLink:
         self._pipe.outbox.clear()
         return answer
 
-    async def stop(self) -> None:
+    async def stop(self, farewell: messages.Command | None = None) -> None:
         del self._writer.header, self._writer.samples
         self._writer._memory.close()
 
@@ -122,8 +125,9 @@ class SessionBench:
 async def on_bench(folder: Path, scenario: Scenario, **options: Any) -> AsyncIterator[SessionBench]:
     """A session that runs `scenario` from t = 0."""
     database, diary = _opened(folder), options.pop("journal", Diary())
+    kind = options.pop("bench", SessionBench)
     session = Session(Settings(data_dir=folder), Workers(), database, diary, **options)  # type: ignore[arg-type]
-    bench = SessionBench(session, diary)
+    bench: SessionBench = kind(session, diary)
     try:
         await session.runs.load(scenario)
         await asyncio.sleep(0)

@@ -158,8 +158,8 @@ def test_a_live_fault_has_a_reason_and_keeps_what_led_to_it(session: httpx.Clien
     ask(session, "set_disturbances", replace={"link": [{"kind": "constant", "torque": 200.0}]})
     until(lambda: state(session) == "fault")
     assert "Diverged at t = " in snapshot(session)["reason"]
-    kept = until(lambda: [event for event in events(session) if "are kept in" in event["text"]])
-    assert kept[-1]["text"].endswith(".npz")
+    kept = until(lambda: [event for event in events(session) if event["text"].startswith("kept of the fault: ")])
+    assert kept[-1]["text"].endswith("of this recording")
     assert session.post("/api/session/resume").status_code == 422
     ask(session, "load_scenario", name="nominal")
     assert state(session) == "ready"

@@ -47,6 +47,7 @@ def reference_controller(tuning: Tuning) -> reference.Controller:
         "stiffness_observer_bandwidth": loop.observer_bandwidth,
         "stiffness_pole": loop.bandwidth,
         "stiffness_damping": loop.damping,
+        "stiffness_terms": loop.terms,
     }
     if isinstance(observer, PositionObserver):
         fields |= {"form": "position"}

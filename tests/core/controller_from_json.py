@@ -119,10 +119,13 @@ class JsonController:
             if name in self.document["gains"]
         }
         tau_s, k, _ = self.spring(motor[0] - link[0], theta_ms)
-        v, a_ms, rate = stiff[1] / theta_ms, ms[2] / theta_ms, motor[1] - link[1]
+        loop = self.document["stiffness_loop"]
+        known = loop["rate_share"] * stiff[1] / theta_ms
+        v, a_ms = loop["moving_share"] * stiff[1] / theta_ms, loop["moving_share"] * ms[2] / theta_ms
+        rate = motor[1] - link[1]
         beta = m["b_l"] / m["J_l"]
         a_l = tau_s / m["J_l"] - beta * link[1] - link[2]
-        j_l = (k * rate - 3 * tau_s * v) / m["J_l"] - beta * a_l - link[3]
+        j_l = (k * rate - 3 * tau_s * known) / m["J_l"] - beta * a_l - link[3]
         e = r[:4] - [link[0], link[1], a_l, j_l]
         self.asked_twisting = 0.0
         if self.document["controller"] == "state_feedback":
@@ -137,7 +140,7 @@ class JsonController:
         torque = m["J_e"] * (needed + motor[2]) + tau_s + m["b_e"] * motor[1]
         if self.document["controller"] == "baseline":
             torque = gains["N_r"] * r[0] - gains["Kx"] @ [link[0], link[1], motor[0], motor[1]]
-        loop = self.document["stiffness_loop"]  # Eq. (19), with r'', b_ms r' and what acts back
+        # Eq. (19), with r'', b_ms r' and what acts back
         holding = m["J_ms"] * (ms[2] + stiff[2]) + m["b_ms"] * ms[1] + back
         return float(torque), float(loop["K_p"] * (ms[0] - stiff[0]) + loop["K_d"] * (ms[1] - stiff[1]) + holding)
 

@@ -10,6 +10,7 @@ from vssea_core.control.tuning import (
     Schedule,
     SlidingMode,
     StateFeedback,
+    StiffnessLoop,
     Tuning,
     VelocityObserver,
 )
@@ -49,6 +50,8 @@ TUNINGS: dict[str, Scenario] = {
     "predict_velocity": tuned(timing=DELAYED, observer=VelocityObserver(predict=True)),
     "predict_position": tuned(REALISTIC, observer=PositionObserver(predict=True)),
     "predict_without_delay": tuned(observer=VelocityObserver(predict=True)),
+    "rate_term": tuned(REALISTIC, stiffness_loop=StiffnessLoop(terms="rate")),
+    "no_terms": tuned(REALISTIC, stiffness_loop=StiffnessLoop(terms="none")),
     "schedule": tuned(REALISTIC, schedule=Schedule(poles_exponent=0.25, bandwidth_exponent=0.35)),
     "schedule_sliding_predict": tuned(
         REALISTIC, controller=SlidingMode(switch="super_twisting"), observer=PositionObserver(predict=True),

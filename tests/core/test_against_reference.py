@@ -56,6 +56,12 @@ VARIANTS: dict[str, Scenario] = {
     "a saturating step": varied(SHORT, reference=StepReference(target=1.0, repeat=False, start_s=0.1)),
     "a move": varied(SHORT, reference=MoveReference(origin=0.1, repeat=False, start_s=0.1, duration_s=0.6)),
     "moving stiffness": varied(tuned(stiffness_loop=FREE_SLEW), **UNDER_LOAD),
+    "moving stiffness, its rate alone known": varied(
+        tuned(stiffness_loop=FREE_SLEW.model_copy(update={"terms": "rate"})), **UNDER_LOAD
+    ),
+    "moving stiffness, nothing of it known": varied(
+        tuned(stiffness_loop=FREE_SLEW.model_copy(update={"terms": "none"})), **UNDER_LOAD
+    ),
     "moving stiffness, position form": varied(
         tuned(stiffness_loop=FREE_SLEW, observer=PositionObserver()), sensors=REALISTIC.sensors, **UNDER_LOAD
     ),

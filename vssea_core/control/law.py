@@ -51,6 +51,8 @@ class Law(NamedTuple):
     stiffness_damping: float
     stiffness_p: float  # w^2 of the stiffness loop
     stiffness_d: float  # 2 z w
+    rate_share: float  # 1 = the theta_ms' term of tau_s' is known to the law, 0 = left out
+    moving_share: float  # 1 = the theta_ms terms of R are known to it, 0 = left out
 
 
 GAINS = 12
@@ -132,10 +134,11 @@ def act(law, memory, target, stiffness_target):
     tau_s = law.spring_constant * spring.torque
     k = law.spring_constant * spring.stiffness
 
-    ms_rate = stiffness.omega / theta_ms
-    ms_acceleration = stiffness_target.r2 / theta_ms
+    known_rate = law.rate_share * stiffness.omega / theta_ms
+    ms_rate = law.moving_share * stiffness.omega / theta_ms
+    ms_acceleration = law.moving_share * stiffness_target.r2 / theta_ms
     deflection_rate = motor.omega - link.omega
-    tau_s_rate = k * deflection_rate - 3.0 * tau_s * ms_rate
+    tau_s_rate = k * deflection_rate - 3.0 * tau_s * known_rate
     beta = law.link_damping / law.link_inertia
     a_l = tau_s / law.link_inertia - beta * link.omega - link.d
     j_l = tau_s_rate / law.link_inertia - beta * a_l - link.d1

@@ -76,6 +76,8 @@ def _fixed(tuning: Tuning, sample_time_s: float) -> list[float]:
         model.stiffness_damping,
         loop.bandwidth**2,
         2.0 * loop.damping * loop.bandwidth,
+        float(loop.terms != "none"),
+        float(loop.terms == "all"),
     ]
 
 

@@ -214,6 +214,11 @@ class StiffnessLoop(Part):
         20.0, "torque for stiffness changes", unit="N·m", symbol="τ_r", low=0.5, high=1e6, typical=(2.0, 60.0), step=0.5,
         meaning="Motor torque a stiffness change under load may cost (3 J_e τ_s θ_ms''/(k θ_ms)); it changes slower above.",
     )
+    terms: Literal["all", "rate", "none"] = choice(
+        "all", "terms of a moving stiffness",
+        meaning="What the torque map knows of a stiffness that moves. all: every θ_ms term. rate: only that of τ_s'. none: as if k "
+        "stood still. Anything but all costs link error while the stiffness changes under load; for comparison.",
+    )
 
 
 def _believed(owner: type[Part], field: str) -> object:

@@ -63,6 +63,8 @@ def numbers_header(scenario: Scenario) -> str:
         "STIFFNESS_DAMPING": f"{literal(law.stiffness_damping)} /* b_ms [N m s/rad] */",
         "STIFFNESS_P": f"{literal(law.stiffness_p)} /* w^2 = K_p / J_ms of Eq. (19) [1/s^2] */",
         "STIFFNESS_D": f"{literal(law.stiffness_d)} /* 2 zeta w = (K_d + b_ms) / J_ms of Eq. (19) [1/s] */",
+        "RATE_SHARE": f"{literal(law.rate_share)} /* 1: tau_s' with its theta_ms' term */",
+        "MOVING_SHARE": f"{literal(law.moving_share)} /* 1: R with its theta_ms terms */",
         "SWITCHING_GAIN": f"{literal(law.switching_gain)} /* rho [rad/s^4], Eq. (16) */",
         "LAYER_WIDTH": f"{literal(law.layer_width)} /* phi [rad/s^3] */",
         "TWISTING_GAIN": f"{literal(law.twisting_gain)} /* L [rad/s^5] */",

@@ -153,6 +153,8 @@ def _stiffness_loop(legend: Legend, scenario: Scenario, tables: Tables) -> None:
     legend.put("stiffness_loop.K_d", law.stiffness_inertia * law.stiffness_d - law.stiffness_damping, "N m s/rad", form)
     legend.put("stiffness_loop.w2", law.stiffness_p, "1/s^2", "w^2 = K_p / J_ms")
     legend.put("stiffness_loop.two_zeta_w", law.stiffness_d, "1/s", "2 zeta w = (K_d + b_ms) / J_ms")
+    legend.put("stiffness_loop.rate_share", law.rate_share, "", "1: tau_s' with its theta_ms' term")
+    legend.put("stiffness_loop.moving_share", law.moving_share, "", "1: R with its theta_ms terms")
     legend.put(
         "stiffness_loop.reference_pole", loop.reference_bandwidth, "rad/s", "triple pole of the reference's filter"
     )

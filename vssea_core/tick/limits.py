@@ -184,12 +184,16 @@ def within_barriers(bounds, motion, torque):
     high, high_bit = upward_bound(bounds, m.omega_e, left, bounds.deflection - deflection, m.omega_l, m.spring_torque)
     left = m.theta_e - max(m.sag, 0.0) - swings - bounds.link_low
     low, low_bit = upward_bound(bounds, -m.omega_e, left, bounds.deflection + deflection, -m.omega_l, -m.spring_torque)
-    bits = 0
+    low = -low
+    if low > high and m.omega_e < 0.0:  # two borders at odds: the one ahead has it
+        high, high_bit = low, low_bit
+    elif low > high:
+        low, low_bit = high, high_bit
     if torque > high:
-        torque, bits = high, high_bit
-    if torque < -low and (bits == 0 or m.omega_e < 0.0):  # where both want the torque, the border ahead has it
-        torque, bits = -low, low_bit
-    return torque, bits
+        return high, high_bit
+    if torque < low:
+        return low, low_bit
+    return torque, 0
 
 
 @inlined

@@ -1,10 +1,11 @@
 import { element } from "../element.js";
 import { inputText, readNumber } from "../quantity.js";
 
-/** A number box of a form; shown numbers are `factor` times the SI value. */
+/** A number box of a form; shown numbers are `factor` times the SI value, with so many digits. */
 export class NumberBox {
-  constructor(label, factor = 1) {
+  constructor(label, factor = 1, digits = 6) {
     this.label = label;
+    this.digits = digits;
     this.factor = factor;
     this.root = element("input", {
       type: "text",
@@ -18,7 +19,7 @@ export class NumberBox {
 
   /** @param {number} value SI */
   set(value) {
-    this.root.value = inputText(Number((value * this.factor).toPrecision(6)));
+    this.root.value = inputText(Number((value * this.factor).toPrecision(this.digits)));
     this.root.removeAttribute("aria-invalid");
   }
 

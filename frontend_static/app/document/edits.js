@@ -10,13 +10,16 @@ export const COMMANDS = {
 
 /** Changes made on this page, sent as commands. The server remembers them: see ChangeHistory. */
 export class Edits {
-  constructor(session) {
+  /** @param {import("../session/live_session.js").LiveSession} session @param {import("../session/try_first.js").TryFirst} tryFirst */
+  constructor(session, tryFirst) {
     this.session = session;
     this.document = session.document;
+    this.tryFirst = tryFirst;
   }
 
   /** Change single fields. @param {string} section "tuning", … @param {Object<string, any>} changes relative path to value */
-  change(section, changes) {
+  async change(section, changes) {
+    if (section === "tuning" && this.tryFirst.isWanted) return this.tryFirst.propose(changes);
     return this.#command(section, { changes });
   }
 

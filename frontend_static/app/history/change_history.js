@@ -8,13 +8,15 @@ const KEPT = 200;
 export class ChangeHistory extends EventTarget {
   #entries = new Map();
 
-  /** @param {import("../session/live_session.js").LiveSession} session */
-  constructor(session) {
+  /** @param {import("../session/operator.js").Operator} operator */
+  constructor(operator) {
     super();
+    const { session } = operator;
+    this.operator = operator;
     this.session = session;
     this.canUndo = this.canRedo = false;
     session.connection.addEventListener("message", ({ detail }) => this.#take(detail));
-    session.addEventListener("connection", () => this.dispatchEvent(new Event("change")));
+    operator.addEventListener("change", () => this.dispatchEvent(new Event("change")));
   }
 
   /** @returns {object[]} the entries as docs/protocol.md has them, oldest first */

@@ -86,12 +86,14 @@ export class HistoryPanel {
 
   #showButtons() {
     const { history, session } = this;
-    this.undo.disabled = !session.isConnected || !history.canUndo;
-    this.redo.disabled = !session.isConnected || !history.canRedo;
+    const { mayChange } = history.operator;
+    this.undo.disabled = !mayChange || !history.canUndo;
+    this.redo.disabled = !mayChange || !history.canRedo;
+    for (const { root } of this.#lines.values()) root.querySelector("button").disabled = !mayChange;
     for (const control of [this.save, this.name]) control.disabled = !session.isConnected;
     const { preset } = session.document;
     this.reset.hidden = !preset;
-    this.reset.disabled = !session.isConnected;
+    this.reset.disabled = !mayChange;
     setText(this.reset, "Reset to preset");
     this.reset.title = preset ? `Take back all changes since ${preset.name}` : "";
   }

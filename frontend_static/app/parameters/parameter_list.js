@@ -7,6 +7,7 @@ import { PartPanel } from "./part_panel.js";
 import { PresetPanel } from "./preset_panel.js";
 import { ScenarioPanel } from "./scenario_panel.js";
 import { SequencePanel } from "./sequence_panel.js";
+import { TryResult } from "./try_result.js";
 
 const SPECIAL = {
   scenario: ScenarioPanel,
@@ -16,10 +17,17 @@ const SPECIAL = {
   grouped: GroupedPanel,
 };
 
-/** The scrolling column of parameter panels, in the order of layout.js; disabled as a whole without a connection. */
+const RESTARTS = new Set(["scenario", "sequence", "rig"]);
+
+/**
+ * The scrolling column of parameter panels, in the order of layout.js; disabled as a whole where this page may change nothing.
+ * Of a rig, what would start the run again is not there.
+ */
 export class ParameterList {
   constructor(root, desk) {
+    this.root = root;
     this.session = desk.session;
+    this.operator = desk.operator;
     const complete = { ...desk, document: desk.session.document, hint: new FieldHint() };
     this.panels = PANELS.map((layout) => new (SPECIAL[layout.is] ?? PartPanel)(layout, complete));
     this.fieldset = element(
@@ -28,10 +36,10 @@ export class ParameterList {
       element("legend", { class: "unseen" }, "Parameters"),
     );
     this.fieldset.append(...this.panels.map((panel) => panel.root));
-    root.replaceChildren(this.fieldset);
+    root.replaceChildren(new TryResult(desk).root, this.fieldset);
     complete.document.addEventListener("change", ({ detail }) => this.#echo(detail));
     complete.baseline.addEventListener("change", () => this.#echo({ own: false }));
-    this.session.addEventListener("connection", () => this.#enable());
+    this.operator.addEventListener("change", () => this.#enable());
     this.#enable();
     this.#echo({ own: false });
   }
@@ -41,7 +49,9 @@ export class ParameterList {
   }
 
   #enable() {
-    this.fieldset.disabled = !this.session.isConnected;
+    this.fieldset.disabled = !this.operator.mayChange;
+    this.root.tabIndex = this.fieldset.disabled ? 0 : -1; // with nothing to focus in it, the column itself is scrolled by keys
+    for (const [i, { id }] of PANELS.entries()) if (RESTARTS.has(id)) this.panels[i].root.hidden = this.operator.isOnRig;
   }
 
   #echo(change) {

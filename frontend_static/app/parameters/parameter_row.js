@@ -58,8 +58,8 @@ export class ParameterRow {
     this.#pending += 1;
     this.root.classList.add("is-pending");
     try {
-      await this.place.write(value);
-      this.say("");
+      const result = await this.place.write(value);
+      this.say(result?.words ?? "");
       return true;
     } catch (refusal) {
       this.say(`${this.words(value)} refused: ${refusal.about?.(this.place.path) ?? refusal.message}`, "refused");

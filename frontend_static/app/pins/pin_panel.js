@@ -100,7 +100,7 @@ class PinLine {
     this.letGo.setAttribute("aria-label", `Let go of ${excerpt.label}`);
     const isOurs = excerpt.by === this.runs.session.you && Date.parse(excerpt.created_at) > performance.timeOrigin;
     const by = isOurs ? "you" : excerpt.by; // a server that was restarted counts its pages anew
-    const kind = excerpt.kind === "trigger" ? "trigger, " : "";
+    const kind = excerpt.kind === "pin" ? "" : `${excerpt.kind}, `;
     const when = new Date(excerpt.created_at).toLocaleTimeString([], { hour12: false });
     setText(this.when, `${kind}${fixed(excerpt.from_s, 1)} to ${fixed(excerpt.to_s, 1)} s, ${when}, ${by}`);
     const words = excerpt.words.join(", ");

@@ -5,6 +5,7 @@ import { channelsOf } from "./chart_list.js";
 import { Envelope } from "./envelope.js";
 import { EventMarks } from "./event_marks.js";
 import { Legend } from "./legend.js";
+import { LevelLines } from "./level_lines.js";
 import { linePath } from "./line_path.js";
 import { OverlayLines } from "./overlay_lines.js";
 import { YRange } from "./y_range.js";
@@ -30,6 +31,7 @@ export class Chart {
       ...series,
     }));
     this.overlays = new OverlayLines(this.series);
+    this.levels = new LevelLines(layout.levels);
     this.envelopes = new Map(channelsOf([layout]).map((channel) => [channel, new Envelope()]));
     this.legend = this.#makeLegend();
     this.canvasArea = element("div", { class: "chart-area" });
@@ -138,9 +140,11 @@ export class Chart {
         factor: layout.left.factor ?? 1,
         isStatic: true,
       });
+    if (layout.levels)
+      entries.push({ label: "limits", colour: "limit-line", isDashed: true, unit: layout.left.unit, words: layout.levels.words, isStatic: true });
     const legend = new Legend(entries);
     this.told = inOrder.map((series, i) => ({ series, item: legend.items[i] }));
-    this.limitItem = layout.limit ? legend.items.at(-1) : null;
+    this.limitItem = layout.limit ? legend.items[inOrder.length] : null;
     legend.scaleReset.addEventListener("click", () => {
       this.freshScales();
       stack.redraw();
@@ -165,6 +169,7 @@ export class Chart {
       let low = Math.min(...shown.map(({ min }) => min));
       let high = Math.max(...shown.map(({ max }) => max));
       if (this.layout.limit && side === "left") [low, high] = this.#withLimit(low, high);
+      if (side === "left") [low, high] = this.levels.withRoom(low, high);
       range.follow(low, high, now);
     }
     for (const series of this.series) if (series.onlyWhenUnlike) this.#compare(series);
@@ -234,6 +239,7 @@ export class Chart {
         drawAxes: [(plot) => this.overlays.draw(plot, palette)],
         draw: [
           (plot) => {
+            this.levels.draw(plot, palette);
             EventMarks.draw(plot, timeWindow.marksShown, palette);
             cursors.draw(plot, palette, this.isTop);
           },

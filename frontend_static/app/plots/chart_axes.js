@@ -42,11 +42,13 @@ function timeAxis(base, hasWords) {
   };
 }
 
-function yAxis(base, { factor }) {
+function yAxis(base, { factor = 1 }) {
   return {
     ...base,
     splits: (plot, _, min, max) =>
-      niceTicks(min, max, Math.max(2, Math.floor(plot.bbox.height / devicePixelRatio / TICK_EVERY_PX))),
+      niceTicks(min * factor, max * factor, Math.max(2, Math.floor(plot.bbox.height / devicePixelRatio / TICK_EVERY_PX))).map(
+        (shown) => shown / factor,
+      ),
     values: (_, ticks) => tickTexts(ticks, factor),
   };
 }

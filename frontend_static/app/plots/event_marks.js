@@ -11,6 +11,7 @@ const KINDS = {
   fault: "fault",
   trigger: "accent",
   state: "dim",
+  rig: "dim",
 };
 const REACH_PX = 5;
 const APART_PX = 8; // a dragged slider leaves many marks of one kind

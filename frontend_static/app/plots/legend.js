@@ -6,7 +6,7 @@ import { decimalsFor, fixed } from "../quantity.js";
  * nothing jumps.
  */
 export class Legend {
-  /** @param {object[]} entries {label, unit, factor, colour, isDashed, isHidden, toggle(isHidden)} */
+  /** @param {object[]} entries {label, unit, factor, colour, isDashed, isHidden, toggle(isHidden), words: a fixed text as value} */
   constructor(entries) {
     this.items = entries.map((entry) => new LegendItem(entry));
     this.scaleReset = element(
@@ -21,7 +21,7 @@ export class Legend {
 class LegendItem {
   constructor(entry) {
     this.entry = entry;
-    this.value = element("span", { class: "legend-value" });
+    this.value = element("span", { class: "legend-value" }, entry.words);
     this.delta = element("span", { class: "legend-delta", hidden: true });
     this.others = element("span", { class: "legend-others", hidden: true });
     this.label = element("span", { class: "legend-label" }, entry.label);

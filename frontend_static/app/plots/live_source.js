@@ -54,11 +54,11 @@ export class LiveSource extends EventTarget {
     return { picture: this.session.store.copy(), marks: [...this.marks] };
   }
 
-  /** While it runs, changes when following the newest sample moves the picture by a pixel. */
+  /** While it runs, or a rig is connected, changes when following the newest sample moves the picture by a pixel. */
   version(secondsPerPixel) {
     const { store, snapshot } = this.session;
     const beneath = this.ghosts?.version ?? 0;
-    if (snapshot?.state !== "running") return `${store.version}/${beneath}`;
+    if (snapshot?.state !== "running" && !snapshot?.rig.connected) return `${store.version}/${beneath}`;
     return `${beneath}/${store.epoch}:${store.length > 0}:${Math.ceil(store.lastTime / secondsPerPixel)}`;
   }
 }

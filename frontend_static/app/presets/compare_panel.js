@@ -18,7 +18,7 @@ export class ComparePanel {
     this.table = new DifferenceTable(isChoice);
     this.table.addEventListener("change", () => this.#sayApply());
     this.words = element("p", { class: "hint", role: "status" });
-    this.button = element("button", { type: "button", class: "start", hidden: true, click: () => this.#apply() }, "Apply");
+    this.button = element("button", { type: "button", class: "start", "data-needs-control": true, hidden: true, click: () => this.#apply() }, "Apply");
     this.problem = element("p", { class: "form-problem", role: "alert", hidden: true });
     this.root = element(
       "section",

@@ -31,6 +31,7 @@ const SIMULATED = "-simulated";
 export class OpenRecording {
   #timer = null;
   #result = null;
+  wanted = null; // {id, span, at}: what to show once it is open
 
   /** @param {object} desk {session, theme} @param {() => void} back to the list */
   constructor({ session, theme }, back) {
@@ -118,6 +119,15 @@ export class OpenRecording {
     setText(this.state, "");
   }
 
+  /** Show the span that was asked for before this recording was open. */
+  showWanted() {
+    const { wanted } = this;
+    if (!wanted || wanted.id !== this.source.run?.id) return;
+    this.wanted = null;
+    this.stack.timeWindow.zoom(...wanted.span);
+    this.replay.seek(wanted.at ?? wanted.span[0]);
+  }
+
   playOrPause() {
     this.replay.toggle();
   }
@@ -147,6 +157,7 @@ export class OpenRecording {
     this.simulation.open(facts);
     this.#tell(facts);
     this.replay.open(run.extent);
+    this.showWanted();
     if (facts.state === "recording") this.#timer = setTimeout(() => this.#grow(), GROWS_MS);
   }
 

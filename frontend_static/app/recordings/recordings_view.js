@@ -21,6 +21,13 @@ export class RecordingsView {
     this.#look();
   }
 
+  /** Open a recording at a span of it, s. */
+  openSpan(id, span, at) {
+    this.page.wanted = { id, span, at };
+    if (this.#shown === id) this.page.showWanted();
+    this.views.go(VIEW, id);
+  }
+
   get isShown() {
     return this.views.shown === VIEW;
   }

@@ -23,7 +23,7 @@ export class UsePanel {
       { class: "side-panel", "aria-label": "In the live session" },
       element("h2", {}, "In the live session"),
       element("div", { class: "form-row" }, element("span", { class: "form-name" }, "motion"), this.channel),
-      element("div", { class: "form-row" }, this.reference, this.scenario),
+      element("div", { class: "form-row", "data-needs-control": true }, this.reference, this.scenario),
       this.words,
     );
   }

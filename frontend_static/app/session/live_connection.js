@@ -40,17 +40,17 @@ export class LiveConnection extends EventTarget {
       socket === this.#socket && this.#lose(reason || "The server closed the connection.");
   }
 
-  /** Send a command. @returns {Promise<object>} its result @throws {Refusal} */
-  command(name, args = {}) {
+  /** Send a command, to be answered within `limitMs`. @returns {Promise<object>} its result @throws {Refusal} */
+  command(name, args = {}, limitMs = COMMAND_LIMIT_MS) {
     if (!this.isOpen) return Promise.reject(notConnected());
     const id = this.#nextId++;
     return new Promise((resolve, reject) => {
       const limit = setTimeout(() => {
         this.#pending.delete(id);
         reject(
-          new Refusal({ title: "No answer", detail: `No answer to “${name}” within ${COMMAND_LIMIT_MS / 1000} s.` }),
+          new Refusal({ title: "No answer", detail: `No answer to “${name}” within ${limitMs / 1000} s.` }),
         );
-      }, COMMAND_LIMIT_MS);
+      }, limitMs);
       this.#pending.set(id, { resolve, reject, limit });
       this.#socket.send(JSON.stringify({ id, command: name, arguments: args }));
     });

@@ -41,12 +41,17 @@ export class LiveSession extends EventTarget {
     return this.connection.isOpen;
   }
 
+  /** What the session does, and why, with “you” for this page. */
+  get sentence() {
+    return (this.snapshot?.sentence ?? "").replace(`by ${this.you} `, "by you ");
+  }
+
   start() {
     this.connection.open();
   }
 
-  command(name, args) {
-    return this.connection.command(name, args);
+  command(name, args, limitMs) {
+    return this.connection.command(name, args, limitMs);
   }
 
   /** Add a line to the log that only this page knows of, such as a refused command. */

@@ -4,10 +4,13 @@ import { fixed } from "../quantity.js";
 const PACES = [0.1, 0.25, 0.5, 1, 2];
 const RUNNING = new Set(["running"]);
 const STARTABLE = new Set(["ready", "paused"]);
+const LATCHED = new Set(["stopped", "fault"]);
 
-/** Pause or resume, single step, reset, and how fast the simulated time runs. */
+/** Pause or resume, single step, reset, and how fast the simulated time runs. Of a rig, only the way out of a stop. */
 export class RunControls {
-  constructor(session, resetDialog) {
+  constructor(operator, resetDialog) {
+    const { session } = operator;
+    this.operator = operator;
     this.session = session;
     this.resetDialog = resetDialog;
     this.pauseButton = document.getElementById("pause");
@@ -26,13 +29,14 @@ export class RunControls {
   }
 
   pauseOrResume() {
+    if (this.operator.isOnRig) return;
     const state = this.session.snapshot?.state;
     if (RUNNING.has(state)) this.#ask("pause");
     else if (STARTABLE.has(state)) this.#ask("resume");
   }
 
   step() {
-    if (this.session.snapshot?.state === "paused") this.#ask("step", { samples: 1 });
+    if (!this.operator.isOnRig && this.session.snapshot?.state === "paused") this.#ask("step", { samples: 1 });
   }
 
   askReset() {
@@ -59,13 +63,24 @@ export class RunControls {
     this.stepButton.hidden = state !== "paused";
     for (const control of [this.stepButton, this.resetButton, this.pace]) control.disabled = !isConnected;
     if (!snapshot) return;
+    this.#leaveOut(state);
     const { asked, achieved } = snapshot.pace;
     this.#offer(asked);
     if (document.activeElement !== this.pace || this.pace.disabled) this.pace.value = String(asked);
-    const isBehind = isRunning && Math.abs(achieved / asked - 1) > 0.02;
+    const isBehind = isRunning && !this.operator.isOnRig && Math.abs(achieved / asked - 1) > 0.02;
     setText(this.achieved, isBehind ? `${fixed(achieved, 2)}× achieved` : "");
     this.achieved.hidden = !isBehind;
     this.pace.title = `Real-time factor: ${asked} asked, ${fixed(achieved, 3)} achieved`;
+  }
+
+  /** A rig has no time to hold: what could is not there. */
+  #leaveOut(state) {
+    const { isOnRig, mayChange } = this.operator;
+    this.pauseButton.hidden = this.pace.parentElement.hidden = isOnRig;
+    this.resetButton.hidden = isOnRig && !LATCHED.has(state);
+    if (isOnRig) this.stepButton.hidden = true;
+    if (isOnRig) this.resetButton.disabled = !mayChange;
+    this.resetButton.title = isOnRig ? "Reset: take back the stop; the drives stay off" : "Reset: back to t = 0";
   }
 
   #offer(pace) {

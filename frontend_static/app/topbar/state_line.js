@@ -7,13 +7,16 @@ const WORDS = {
   paused: "Paused",
   stopped: "Stopped",
   fault: "Fault",
+  connected: "Connected",
+  homing: "Homing",
+  armed: "Armed",
+  stopping: "Stopping",
 };
 
-/** Rig mark, state dot, state word and sentence: what the session does, and why. */
+/** State dot, state word and sentence: what the session does, and why. */
 export class StateLine {
   constructor(session) {
     this.session = session;
-    this.rig = document.getElementById("rig");
     this.line = document.getElementById("state");
     this.word = document.getElementById("state-word");
     this.rest = document.getElementById("state-sentence");
@@ -25,11 +28,9 @@ export class StateLine {
   #show() {
     const { snapshot, isConnected } = this.session;
     if (!snapshot) return this.#say("connecting", "Connecting", "to the session");
-    setText(this.rig, snapshot.rig.label);
-    this.rig.dataset.kind = snapshot.rig.kind;
     if (!isConnected) return this.#say("lost", "No connection", "what is shown is old");
     const word = WORDS[snapshot.state] ?? snapshot.state;
-    const sentence = snapshot.sentence.replace(`by ${this.session.you} `, "by you ");
+    const { sentence } = this.session;
     const rest = sentence.toLowerCase().startsWith(word.toLowerCase())
       ? sentence.slice(word.length).replace(/^[,:.\s]+/, "")
       : sentence;

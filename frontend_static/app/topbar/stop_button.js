@@ -7,8 +7,10 @@ const PATIENCE_MS = 250;
  * connection, also over REST.
  */
 export class StopButton {
-  constructor(session) {
+  /** @param {import("../session/live_session.js").LiveSession} session @param {import("../session/jog.js").Jog} jog */
+  constructor(session, jog) {
     this.session = session;
+    this.jog = jog;
     this.button = document.getElementById("stop");
     this.button.addEventListener("click", () => this.press());
   }
@@ -20,6 +22,7 @@ export class StopButton {
       () => true,
       () => false,
     );
+    this.jog.end();
     const late = new Promise((resolve) => setTimeout(() => resolve(false), this.session.isConnected ? PATIENCE_MS : 0));
     if (await Promise.race([answered, late])) return;
     try {

@@ -15,6 +15,7 @@ export class Views extends EventTarget {
     addEventListener("hashchange", () => this.#read());
     addEventListener("popstate", () => this.#read());
     this.#read();
+    new ResizeObserver(() => this.#reveal()).observe(document.querySelector("nav"));
   }
 
   /** What is open in the shown view, "" for nothing. */
@@ -50,7 +51,13 @@ export class Views extends EventTarget {
       document.getElementById(tab.getAttribute("aria-controls")).hidden = !isShown;
       if (isShown) document.title = `VSSEA · ${tab.textContent}`;
     }
+    this.#reveal();
     this.dispatchEvent(new Event("change"));
+  }
+
+  /** Where the tabs do not all fit, the chosen one is in sight. */
+  #reveal() {
+    this.tabs.find((tab) => tab.dataset.view === this.shown)?.scrollIntoView({ block: "nearest", inline: "nearest" });
   }
 }
 

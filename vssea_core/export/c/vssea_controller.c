@@ -264,9 +264,11 @@ static void act(const vssea_controller_t *c, const double *g, const vssea_target
     double theta_ms = stiffness->measured;
     spring_t spring = spring_at(motor->theta - link->theta, theta_ms);
     double tau_s = VSSEA_SPRING_CONSTANT * spring.torque, k = VSSEA_SPRING_CONSTANT * spring.stiffness;
-    double ms_rate = stiffness->omega / theta_ms, ms_acceleration = ms->r2 / theta_ms;
+    double known_rate = VSSEA_RATE_SHARE * stiffness->omega / theta_ms;
+    double ms_rate = VSSEA_MOVING_SHARE * stiffness->omega / theta_ms;
+    double ms_acceleration = VSSEA_MOVING_SHARE * ms->r2 / theta_ms;
     double deflection_rate = motor->omega - link->omega;
-    double tau_s_rate = k * deflection_rate - 3.0 * tau_s * ms_rate;
+    double tau_s_rate = k * deflection_rate - 3.0 * tau_s * known_rate;
     double beta = VSSEA_LINK_DAMPING / VSSEA_LINK_INERTIA;
     double a_l = tau_s / VSSEA_LINK_INERTIA - beta * link->omega - link->d;
     double j_l = tau_s_rate / VSSEA_LINK_INERTIA - beta * a_l - link->d1;

@@ -1,0 +1,1 @@
+"""Measurements on an emulated rig: the whole chain of page, server, control process, CAN frames and plant."""
