@@ -109,6 +109,7 @@ class Conduct:
         return Seen(
             on.measured, self._error, controller.spring_torque, controller.stiffness, controller.link_disturbance_estimate,
             controller.motor_disturbance_estimate, on.homed, on.axes.any_on, closed,
+            (on.axes.enabled("motor"), on.axes.enabled("stiffness")),
         )  # fmt: skip
 
     def _torques(self, row: NDArray[np.float64], now: float) -> tuple[float, float]:
