@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import TypedDict
 
 from backend.rigs.rig import RigError
-from backend.rigs.rig_file import RigFile
+from backend.rigs.rig_file import SIMULATED, RigFile
 from vssea_core.actuator.parameters import Actuator
 
 
@@ -28,6 +28,8 @@ def check_rig(
     rig_file: RigFile, gear_ratio: float | None = None, *, clock: Callable[[], float] = time.monotonic
 ) -> list[CheckLine]:
     """Return what was found beside what the file expects; `gear_ratio` is the actuator's, the default one's if not given."""
+    if rig_file.bus.interface == SIMULATED:
+        return [line("rig", "simulated, no bus", "simulated, no bus")]
     from backend.rigs.canopen.inspection import inspected
     from backend.rigs.canopen.opening import open_bus
 

@@ -257,6 +257,15 @@ def test_peaks_are_those_since_watch_and_say_when_the_motor_was_without_torque()
     assert bench.emulator.peaks()["peak_deflection"] == 0.0
 
 
+def test_a_motor_that_had_no_torque_is_safe_from_the_watch_on() -> None:
+    bench = Bench()
+    bench.wait(1.0)
+    bench.emulator.watch()
+    assert bench.emulator.peaks()["safe_after_s"] is None
+    bench.wait(0.11)
+    assert bench.emulator.peaks()["safe_after_s"] == 0.0
+
+
 def test_a_drive_that_comes_back_into_operation_is_told() -> None:
     bench = Bench().enabled()
     assert not bench.emulator.peaks()["re_enabled"]  # it had not left it
