@@ -33,4 +33,5 @@ def missing(measured: Measured, age: int = STOPS) -> str:
 def stop_sentence(measured: Measured) -> str:
     """Return why a rig with measurements of age STOPS was stopped."""
     who = missing(measured)
-    return f"{who[:1].upper()}{who[1:]} has not answered for {STOPS} cycles. Check cable and power, then Reset."
+    have = "have" if "," in who else "has"
+    return f"{who[:1].upper()}{who[1:]} {have} not answered for {STOPS} cycles. Check cable and power, then Reset."

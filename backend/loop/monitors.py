@@ -53,6 +53,9 @@ class Seen(NamedTuple):
     homed: bool
     driven: bool  # an axis is enabled
     closed: bool  # the loops are closed and the torque is blended in
+    obeying: tuple[
+        bool, bool
+    ]  # motor and stiffness drive give what the loop asks, not what they brake with by themselves
 
 
 class Monitors:
@@ -96,8 +99,7 @@ class Monitors:
             found.append((OVERSPEED, f"{self.motor_speed:.2f} rad/s, limit {self._limits.motor_speed:g}"))
         if seen.homed:
             self._look_at_positions(seen, found)
-        if seen.driven:
-            self._look_at_torques(seen.measured, found)
+        self._look_at_torques(seen, found)
         self._look_at_loop(seen, found)
         return found
 
@@ -141,7 +143,8 @@ class Monitors:
         if seen.driven and not self._stiff <= m.stiffness_position <= self._soft:
             found.append((END_STOP, f"θ_ms at {m.stiffness_position:.1f} rad"))
 
-    def _look_at_torques(self, m: Measured, found: Found) -> None:
+    def _look_at_torques(self, seen: Seen, found: Found) -> None:
+        m = seen.measured
         share = min(1.0, self._period_s / TORQUE_S)
         values = (m.motor_torque, m.motor_torque_seen, m.stiffness_torque, m.stiffness_torque_seen)
         for place, value in enumerate(values):
@@ -149,11 +152,11 @@ class Monitors:
                 self._torques[place] += share * (value - self._torques[place])
         asked_e, given_e, asked_ms, given_ms = self._torques
         axes = (
-            ("motor", asked_e, given_e, self._limits.motor_torque, m.motor_torque_seen),
-            ("stiffness", asked_ms, given_ms, self._limits.stiffness_torque, m.stiffness_torque_seen),
+            ("motor", asked_e, given_e, self._limits.motor_torque, seen.obeying[0], m.motor_torque_seen),
+            ("stiffness", asked_ms, given_ms, self._limits.stiffness_torque, seen.obeying[1], m.stiffness_torque_seen),
         )
-        for axis, asked, given, limit, now in axes:
-            short = now == now and abs(asked - given) > 0.04 * limit + 0.15 * abs(asked)
+        for axis, asked, given, limit, obeying, told in axes:
+            short = obeying and told == told and abs(asked - given) > 0.04 * limit + 0.15 * abs(asked)
             if self._not_given[axis](short):
                 found.append((TORQUE_NOT_GIVEN, f"{axis} drive: asked {asked:.3g} N·m, given {given:.3g}"))
 

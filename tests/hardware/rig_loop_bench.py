@@ -11,7 +11,7 @@ from backend.loop.messages import Changed, Done, Refused, RigReport, State
 from backend.loop.pacer import Pacer
 from backend.loop.rig_loop import RigLoop
 from backend.rigs.faults import Fault
-from backend.rigs.rig import Axis, AxisStatus, Measured
+from backend.rigs.rig import Axis, Measured
 from backend.rigs.rig_file import RigFile
 from backend.rigs.simulated import SimulatedRig
 from backend.telemetry.beats import LEASE, WEB, Beats
@@ -105,9 +105,6 @@ class BrokenRig(SimulatedRig):
 
     def switch_off_by_itself(self, axis: Axis) -> None:
         super().disarm(axis)
-
-    def status(self, axis: Axis) -> AxisStatus:
-        return self.axis(axis)
 
 
 class Pipe:

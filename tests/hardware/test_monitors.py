@@ -34,7 +34,7 @@ REST = Measured(0.3, 0.3, 70.0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0)
 
 
 def seen(measured: Measured = REST, **changes: object) -> Seen:
-    return Seen(measured, 0.0, 0.0, 100.0, 0.0, 0.0, True, True, True)._replace(**changes)
+    return Seen(measured, 0.0, 0.0, 100.0, 0.0, 0.0, True, True, True, (True, True))._replace(**changes)
 
 
 def found(monitors: Monitors, moment: Seen) -> list[Fault]:
@@ -169,7 +169,7 @@ def test_a_torque_that_is_not_given_is_noticed_within_a_fifth_of_a_second(monito
     assert cycles_until(monitors, TORQUE_NOT_GIVEN, seen(half)) < 100
     weak = REST._replace(stiffness_torque=0.3, stiffness_torque_seen=0.0)
     assert cycles_until(monitors, TORQUE_NOT_GIVEN, seen(weak)) < 100
-    assert cycles_until(monitors, TORQUE_NOT_GIVEN, seen(half, driven=False)) == 1000
+    assert cycles_until(monitors, TORQUE_NOT_GIVEN, seen(half, obeying=(False, True))) == 1000
     near = REST._replace(motor_torque=20.0, motor_torque_seen=18.5)
     assert cycles_until(monitors, TORQUE_NOT_GIVEN, seen(near)) == 1000
     silent = REST._replace(motor_torque=20.0, motor_torque_seen=math.nan)

@@ -101,7 +101,8 @@ def test_ten_missed_cycles_are_a_fault_of_the_node_and_of_the_bus_if_all_are_sil
 
 
 def test_a_stop_for_missing_measurements_names_the_nodes() -> None:
-    assert stop_sentence(measured(motor=3, link=4)).startswith("The motor drive, the link encoder has not answered")
+    assert stop_sentence(measured(motor=3, link=4)).startswith("The motor drive, the link encoder have not answered")
+    assert stop_sentence(measured(stiffness=3)).startswith("The stiffness drive has not answered")
 
 
 def test_a_latched_fault_keeps_its_first_time_and_stands_while_it_is_seen() -> None:
