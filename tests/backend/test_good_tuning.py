@@ -102,6 +102,7 @@ def test_a_session_goes_back_to_the_good_tuning_as_a_change_and_stays_at_fault(d
 
 def test_a_simulation_keeps_the_tuning_that_diverged(data_dir: Path) -> None:
     async def work(bench: RigBench) -> None:
+        await bench.ask("reset")
         await bench.passed(PROVED_S + 0.1)
         await bench.ask("tune", changes={"observer.bandwidth": 90.0})
         tuning = bench.session.scenario.tuning
