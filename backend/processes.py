@@ -1,14 +1,18 @@
 """Starting another process by the name of its entry, so that the web process never imports what that process needs."""
 
+import ctypes
 import importlib
 import multiprocessing
 import os
+import sys
 from contextlib import suppress
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
 CONTEXT = multiprocessing.get_context("spawn")
+MCL_CURRENT_AND_FUTURE = 3
+PRIORITY = 20
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 
@@ -23,6 +27,18 @@ def set_niceness(niceness: int) -> None:
     """Set this process's share of a busy processor, from -20 (most) to 19; more than the usual 0 needs privileges."""
     with suppress(OSError, AttributeError):
         os.setpriority(os.PRIO_PROCESS, 0, niceness)
+
+
+def ask_for_real_time() -> bool:
+    """Ask for real-time scheduling and locked memory, return whether granted; both need privileges."""
+    if not sys.platform.startswith("linux"):
+        return False
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
+    except OSError:
+        return False
+    ctypes.CDLL(None).mlockall(MCL_CURRENT_AND_FUTURE)
+    return True
 
 
 def name_this_process(name: str) -> None:

@@ -1,12 +1,8 @@
 """What real-time loops want of an operating system: kernels compiled before, no garbage collection, priority, locked memory."""
 
-import ctypes
 import gc
-import os
-import sys
 
-MCL_CURRENT_AND_FUTURE = 3
-PRIORITY = 20
+from backend.processes import ask_for_real_time
 
 
 def compile_first() -> None:
@@ -28,16 +24,4 @@ def settle_down() -> bool:
     gc.collect()
     gc.freeze()
     gc.disable()
-    return _ask_for_real_time()
-
-
-def _ask_for_real_time() -> bool:
-    """Ask for real-time scheduling and locked memory; both need privileges, and the loop does its best without."""
-    if not sys.platform.startswith("linux"):
-        return False
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
-    except OSError:
-        return False
-    ctypes.CDLL(None).mlockall(MCL_CURRENT_AND_FUTURE)
-    return True
+    return ask_for_real_time()

@@ -8,7 +8,6 @@ from importlib.resources import files
 from typing import Any
 
 from backend.emulator.start import EmulatorHandle, start_emulator
-
 from benchmarks.live_server import Server, running_server
 from benchmarks.rigs.operator import Operator
 
@@ -48,6 +47,7 @@ def armed(operator: Operator, **tuning: Any) -> None:
     operator.ask("connect_rig", rig=RIG)
     operator.present = True
     operator.wait_for("connected", "ready")
+    operator.wait(lambda: operator.snapshot["rig"].get("lease_left_s", 0.0) > 0.0, "first renewal")
     if tuning:
         operator.ask("tune", changes=tuning)
     if not operator.snapshot["rig"]["homed"]:

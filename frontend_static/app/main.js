@@ -57,6 +57,7 @@ const operator = new Operator(session);
 const jog = new Jog(operator);
 const tryFirst = new TryFirst(operator);
 const resetDialog = new ResetDialog();
+const ask = new AskDialog();
 const views = new Views();
 const stop = new StopButton(session, jog);
 const run = new RunControls(operator, resetDialog);
@@ -104,7 +105,8 @@ const hardware = new HardwareView(document.getElementById("view-hardware"), {
   theme,
   views,
   pins,
-  actions: new RigActions(operator, { ask: new AskDialog(), reset: resetDialog }),
+  ask,
+  actions: new RigActions(operator, { ask, reset: resetDialog }),
   openRecording: (id, span, at) => recordings.openSpan(id, span, at),
 });
 

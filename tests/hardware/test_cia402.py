@@ -46,7 +46,10 @@ def test_operation_is_asked_for_only_towards_the_goal_enabled() -> None:
         (drive_state(status), goal) for status, goal, before in EVERYTHING if may_enable(step(status, goal, before)[0])
     }
     assert asked == {
-        (state, Goal.ENABLED) for state in (DriveState.SWITCHED_ON, DriveState.OPERATION_ENABLED, DriveState.QUICK_STOP)
+        (DriveState.SWITCHED_ON, Goal.ENABLED),
+        (DriveState.QUICK_STOP, Goal.ENABLED),
+        (DriveState.OPERATION_ENABLED, Goal.ENABLED),
+        (DriveState.OPERATION_ENABLED, Goal.KEPT),
     }
 
 
@@ -80,20 +83,18 @@ def test_a_fault_ends_the_wish_to_be_enabled() -> None:
             assert after.control_word in (0, FAULT_RESET)
 
 
-@pytest.mark.parametrize(
-    "state", [s for s in DriveState if s not in (DriveState.SWITCHED_ON, DriveState.OPERATION_ENABLED)]
-)
+@pytest.mark.parametrize("state", [s for s in DriveState if s is not DriveState.OPERATION_ENABLED])
 def test_a_drive_that_left_operation_by_itself_is_not_enabled_again(state: DriveState) -> None:
     status = WORDS_OF.get(state, 0x01)
     assert drive_state(status) is state
-    word, _, axis, goal = step(status, Goal.ENABLED, ENABLE)
+    word, _, axis, goal = step(status, Goal.KEPT, ENABLE)
     assert not may_enable(word)
-    assert goal is not Goal.ENABLED
+    assert goal in (Goal.DISABLED, Goal.STOPPED)
     assert axis != "enabled"
 
 
 def test_a_drive_that_holds_by_its_own_quick_stop_goes_on_holding() -> None:
-    word, _, axis, goal = step(WORDS_OF[DriveState.QUICK_STOP], Goal.ENABLED, ENABLE)
+    word, _, axis, goal = step(WORDS_OF[DriveState.QUICK_STOP], Goal.KEPT, ENABLE)
     assert (word, axis, goal) == (QUICK_STOP, "stopping", Goal.STOPPED)
 
 
@@ -118,7 +119,15 @@ def test_the_way_to_operation_takes_the_three_words_of_the_standard() -> None:
         before, _, axis, goal = step(WORDS_OF[state], goal, before)
         words.append((before, axis))
     assert words == [(0x06, "enabling"), (0x07, "enabling"), (0x0F, "enabling"), (0x0F, "enabled")]
-    assert goal is Goal.ENABLED
+    assert goal is Goal.KEPT
+
+
+def test_a_drive_that_holds_is_enabled_without_letting_go_however_long_it_takes() -> None:
+    goal, before = Goal.ENABLED, QUICK_STOP
+    for _ in range(5):
+        before, _, axis, goal = step(WORDS_OF[DriveState.QUICK_STOP], goal, before)
+        assert (before, axis) == (ENABLE, "enabling")
+    assert step(WORDS_OF[DriveState.OPERATION_ENABLED], goal, before).state == "enabled"
 
 
 def test_stopping_keeps_power_on_and_lowers_the_quick_stop_bit() -> None:

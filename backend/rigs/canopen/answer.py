@@ -7,16 +7,19 @@ from typing import Any
 NEVER = 1_000_000
 """Age [cycles] of what has not come yet."""
 MOST_OWED = 4
+PROBED_AFTER = 3
+"""Cycles from a doubt to the cycle without SYNC that settles it."""
 
 
 class Answer:
     """A TPDO. Every SYNC asks for one; frames of one identifier come in order, so the newest answers the newest SYNC.
 
-    After a cycle without an answer two may come: the first is the late one, and is not taken for this cycle's. Where only
-    one comes it is this cycle's if it is about as quick as usual (the other was lost), else the late one still.
+    After a cycle without an answer two may come: the first is the late one. Where only one comes, nothing in it says whether
+    the other was lost or it is itself a cycle late. It is taken for this cycle's, and a cycle without SYNC is asked for: what
+    comes in that one was late, and from then on nothing is taken until an answer comes within its own cycle.
     """
 
-    __slots__ = ("_at_s", "_came", "_size", "_sound", "_unpack", "age", "can_id", "content", "owed")
+    __slots__ = ("_came", "_probed_in", "_size", "_sound", "_unpack", "age", "can_id", "content", "is_late", "owed")
 
     def __init__(self, can_id: int, form: str, sound: Callable[[tuple[int, ...]], bool] | None = None) -> None:
         layout = struct.Struct(form)
@@ -24,17 +27,31 @@ class Answer:
         self.content: tuple[Any, ...] | None = None
         self.age = NEVER
         self.owed = 0
+        self.is_late = False
+        """Whether answers were found to come in later cycles than their own."""
         self._unpack, self._size, self._sound = layout.unpack, layout.size, sound
         self._came = 0
-        self._at_s = 0.0
+        self._probed_in = 0
+
+    @property
+    def wants_probe(self) -> bool:
+        """Whether a cycle without SYNC is due."""
+        return self._probed_in == 1
+
+    @property
+    def came_late(self) -> bool:
+        """Whether an earlier cycle's frame came in this one."""
+        return self._came > 1
 
     def begin(self, asked: bool) -> None:
         """Begin a cycle, with a SYNC sent or without."""
         self._came = 0
+        if self._probed_in > 1:
+            self._probed_in -= 1
         if asked and self.owed < MOST_OWED:
             self.owed += 1
 
-    def take(self, data: bytearray, at_s: float) -> bool:
+    def take(self, data: bytearray) -> bool:
         """Take a frame over; return False where its length or content is impossible."""
         if self.owed:
             self.owed -= 1
@@ -45,19 +62,25 @@ class Answer:
             return False
         self.content = content
         self._came += 1
-        self._at_s = at_s
         return True
 
-    @property
-    def was_late(self) -> bool:
-        """Whether an earlier cycle's frame came in this one."""
-        return self._came > 1
+    def probe(self) -> bool:
+        """Close a cycle without SYNC: return whether a late answer came; none is on its way any more."""
+        self.is_late = self.is_late or self._came > 0
+        self.owed = self._probed_in = 0
+        self.age += 1
+        return self._came > 0
 
-    def settle(self, usual_s: float) -> bool:
-        """Close the cycle: return whether the content is this cycle's; `usual_s` is when a usual answer is there by."""
-        if self._came and (not self.owed or self._at_s <= usual_s):
-            self.owed = 0
-            self.age = 0
-            return True
+    def settle(self) -> bool:
+        """Close a cycle with SYNC: return whether the content is this cycle's."""
+        if self._came:
+            if not self.owed:
+                self.age, self.is_late = 0, False
+                return True
+            if not self._probed_in:
+                self._probed_in = PROBED_AFTER
+            if not self.is_late:
+                self.owed = self.age = 0
+                return True
         self.age += 1
         return False

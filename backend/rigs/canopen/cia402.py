@@ -29,6 +29,7 @@ class Goal(StrEnum):
 
     DISABLED = "disabled"
     ENABLED = "enabled"
+    KEPT = "kept enabled"  # it was in operation; should it leave by itself, that is the end
     STOPPED = "stopped"  # by its own quick stop
     RESET = "reset"  # out of its fault, once
 
@@ -80,23 +81,24 @@ _TO_ENABLE = {
     DriveState.QUICK_STOP: ENABLE,
 }
 _IN_FAULT = (DriveState.FAULT, DriveState.FAULT_REACTION)
-_UNDER_ENABLE = (DriveState.SWITCHED_ON, DriveState.OPERATION_ENABLED)
 
 
 def step(status_word: int, goal: Goal, previous: int) -> Step:
     """Return the next control word; `previous` is the one before it.
 
-    The goal that comes back is the one asked for, but DISABLED (or STOPPED, where the drive holds by its own quick stop)
-    where the drive has ended it.
+    The goal that comes back is the one to go on with: KEPT once ENABLED is reached, and DISABLED (STOPPED, where the drive
+    holds by its own quick stop) once the drive has left operation by itself.
     """
     drive = drive_state(status_word)
     if drive in _IN_FAULT:
         return _faulted(drive, goal, previous)
     if goal is Goal.RESET:
         goal = Goal.DISABLED
-    elif goal is Goal.ENABLED and previous == ENABLE and drive not in _UNDER_ENABLE:
+    elif goal is Goal.ENABLED and drive is DriveState.OPERATION_ENABLED:
+        goal = Goal.KEPT
+    elif goal is Goal.KEPT and drive is not DriveState.OPERATION_ENABLED:
         goal = Goal.STOPPED if drive is DriveState.QUICK_STOP else Goal.DISABLED
-    if goal is Goal.ENABLED:
+    if goal in (Goal.ENABLED, Goal.KEPT):
         word = _TO_ENABLE.get(drive, DISABLE_VOLTAGE)
     elif goal is Goal.STOPPED:
         word = QUICK_STOP
@@ -115,7 +117,7 @@ def _faulted(drive: DriveState, goal: Goal, previous: int) -> Step:
 
 def _axis_state(drive: DriveState, goal: Goal) -> AxisState:
     if drive is DriveState.OPERATION_ENABLED:
-        return "enabled" if goal is Goal.ENABLED else "stopping"
+        return "enabled" if goal is Goal.KEPT else "stopping"
     if drive is DriveState.QUICK_STOP:
         return "enabling" if goal is Goal.ENABLED else "stopping"
     if drive in (DriveState.UNKNOWN, DriveState.NOT_READY):

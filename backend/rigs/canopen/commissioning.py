@@ -48,7 +48,7 @@ def commission(rig_file: RigFile, gear_ratio: float, nodes: dict[Place, Node]) -
         refused += [f"{place.words}: {words}" for words in configurator.refused]
     if link is None:
         host = drives["motor" if rig_file.link.source == "motor_drive" else "stiffness"]
-        link = LinkChannel(host.torque_answer, 1, LinkPosition(rig_file.link), shared=True)
+        link = LinkChannel(host.torque_answer, 1, LinkPosition(rig_file.link))
     for node in nodes.values():
         _manage(node, "OPERATIONAL")
         node.forget()
@@ -67,9 +67,7 @@ def _manage(node: Node, state: Literal["OPERATIONAL", "PRE-OPERATIONAL"]) -> Non
         raise RigError(CONFIGURATION, f"node {node.number} cannot be told to be {state.lower()}: {error}") from error
 
 
-def _drive(
-    place: Place, rig_file: RigFile, gear_ratio: float, node: Node, configurator: Configurator
-) -> DriveChannel:  # fmt: skip
+def _drive(place: Place, rig_file: RigFile, gear_ratio: float, node: Node, configurator: Configurator) -> DriveChannel:
     drive, axis = place.drive, place.axis
     if drive is None or axis is None:
         raise RigError(CONFIGURATION, f"{place.words} is no drive")
@@ -101,7 +99,7 @@ def _encoder(rig_file: RigFile, node: Node, configurator: Configurator) -> LinkC
     for other in _OTHER_TPDOS:
         configurator.silence(other)
     configurator.settings([heartbeat()])
-    return LinkChannel(Answer(pdo.can_id, pdo.form), 0, LinkPosition(rig_file.link), shared=False)
+    return LinkChannel(Answer(pdo.can_id, pdo.form), 0, LinkPosition(rig_file.link))
 
 
 def _scale(place: Place, drive: Drive, gear_ratio: float, node: Node) -> TorqueScale:

@@ -18,8 +18,6 @@ CORRUPTED_AT_ONCE, FORGIVEN_A_CYCLE = 3.0, 0.01
 """More malformed frames than this are a fault; one is forgiven every 100 cycles."""
 UNSENT_AT_ONCE = 3
 """Cycles in a row in which the interface took nothing that are a fault."""
-USUAL_MARGIN = 2.0
-"""An answer that comes within so many usual round trips is no late one."""
 BUS_OFF_CLASS, CONTROLLER_CLASS, ACTIVE_AGAIN = 0x40, 0x04, 0x40
 _CLASSES = {
     0x001: "transmission timeout",
@@ -57,36 +55,34 @@ class Cycle:
             arbitration_id=HEARTBEAT_ID + OWN_NODE, is_extended_id=False, data=bytearray((OPERATIONAL,))
         )
         self._heartbeat_every = max(1, round(heartbeat_s / period_s))
-        self._usual_s = self._window_s
         self._unsent = 0
         self._corrupted = 0.0
         self._errors: list[str] = []
         self._reason = ""
         self._was_late = False
-        self._last_s = 0.0
-        self.sent = False
+        self._asked_s = 0.0
         self.cycles = self.late = 0
         self.round_trip_s = 0.0
 
-    def turn(self) -> float:
-        """Run one cycle; return by when [s] after SYNC a usual answer was there, as a time of the clock."""
+    def turn(self) -> bool:
+        """Run one cycle; return whether the drives took their commands over."""
         began = self._clock()
         self._was_late = False
         self._drain()
-        self.sent = self._send()
-        sync = self._clock()
+        probing = self._wants_probe()
+        sent = self._send(with_sync=not probing)
+        self._asked_s = self._clock()
+        asked = sent and not probing
         for answer in self._answers:
-            answer.begin(self.sent)
-        if self.sent:
-            self._receive(began + self._window_s)
+            answer.begin(asked)
+        if sent:
+            self._receive(began + self._window_s, asked)
+        self._settle(probing)
         self.cycles += 1
-        if self._was_late or any(answer.was_late for answer in self._answers):
-            self.late += 1
-        self._learn(sync)
         self._corrupted = max(0.0, self._corrupted - FORGIVEN_A_CYCLE)
         if self.cycles % self._heartbeat_every == 1 % self._heartbeat_every:
             self._send_one(self._heartbeat)
-        return sync + USUAL_MARGIN * self._usual_s
+        return asked
 
     def take_errors(self) -> list[str]:
         """Return what the interface reported since the last call, in words."""
@@ -111,14 +107,28 @@ class Cycle:
             if self._handle(message):
                 self._was_late = True
 
-    def _send(self) -> bool:
-        for message in self._commands:
+    def _wants_probe(self) -> bool:
+        """Return whether to leave SYNC out this time; not on top of a missed cycle, unless that is what ails."""
+        if not any(answer.wants_probe for answer in self._answers):
+            return False
+        return all(answer.age == 0 or answer.is_late for answer in self._answers)
+
+    def _settle(self, probing: bool) -> None:
+        was_late = self._was_late
+        for answer in self._answers:
+            if probing:
+                was_late = answer.probe() or was_late
+            else:
+                was_late = was_late or answer.came_late
+                answer.settle()
+        if was_late:
+            self.late += 1
+
+    def _send(self, with_sync: bool) -> bool:
+        for message in (*self._commands, self._sync) if with_sync else self._commands:
             if not self._send_one(message):
                 self._unsent += 1
                 return False
-        if not self._send_one(self._sync):
-            self._unsent += 1
-            return False
         self._unsent = 0
         return True
 
@@ -130,8 +140,7 @@ class Cycle:
             return False
         return True
 
-    def _receive(self, deadline: float) -> None:
-        missing = len(self._answers)
+    def _receive(self, deadline: float, asked: bool) -> None:
         for _ in range(MOST_FRAMES):
             left = deadline - self._clock()
             message = self._next(left if left > 0.0 else 0.0)
@@ -139,10 +148,9 @@ class Cycle:
                 if left <= 0.0:
                     return
                 continue
-            if self._handle(message):
-                missing = sum(1 for answer in self._answers if answer.owed)
-                if not missing:
-                    return
+            if self._handle(message) and asked and not any(answer.owed for answer in self._answers):
+                self.round_trip_s = self._clock() - self._asked_s
+                return
 
     def _next(self, wait_s: float) -> can.Message | None:
         try:
@@ -161,8 +169,7 @@ class Cycle:
             if not hand_on(self._network, message):
                 self._corrupted += 1.0
             return False
-        self._last_s = self._clock()
-        if not answer.take(message.data, self._last_s):
+        if not answer.take(message.data):
             self._corrupted += 1.0
         return True
 
@@ -173,8 +180,3 @@ class Cycle:
         words = [word for bit, word in _CLASSES.items() if kind & bit]
         if len(self._errors) < MOST_FRAMES:
             self._errors.append(", ".join(words) or "error frame")
-
-    def _learn(self, sync: float) -> None:
-        if all(not answer.owed for answer in self._answers) and not self._was_late:
-            self.round_trip_s = max(0.0, self._last_s - sync)
-            self._usual_s += 0.02 * (self.round_trip_s - self._usual_s)

@@ -77,13 +77,13 @@ class DriveChannel:
         self._units = units
         _COMMAND.pack_into(self.message.data, 0, word, units)
 
-    def settle(self, usual_s: float, sent: bool) -> None:
-        """Take over what this cycle brought; `sent` says whether the command went out."""
-        if sent:
+    def settle(self, taken: bool) -> None:
+        """Take over what this cycle brought; `taken` says whether the drive has the command."""
+        if taken:
             self.torque = self._scale.torque(self._units)
-        if self.answer.settle(usual_s) and self.answer.content is not None:
+        if self.answer.age == 0 and self.answer.content is not None:
             self.position = self._counter.take(self.answer.content[1])
-        if self.torque_answer.settle(usual_s) and self.torque_answer.content is not None:
+        if self.torque_answer.age == 0 and self.torque_answer.content is not None:
             self.torque_seen = self._scale.torque(self.torque_answer.content[0])
 
     def status(self) -> AxisStatus:

@@ -12,21 +12,19 @@ def link_entry(link: LinkEncoder) -> Entry:
 
 
 class LinkChannel:
-    """The link's position [rad]; `place` is where it stands in the answer, `shared` that a drive closes that answer."""
+    """The link's position [rad]; `place` is where it stands in the answer."""
 
-    def __init__(self, answer: Answer, place: int, counter: LinkPosition, shared: bool) -> None:
+    def __init__(self, answer: Answer, place: int, counter: LinkPosition) -> None:
         self.answer = answer
         self.position = 0.0
-        self._place, self._counter, self._shared = place, counter, shared
+        self._place, self._counter = place, counter
 
     @property
     def age(self) -> int:
         """Cycles since the position was new."""
         return self.answer.age
 
-    def settle(self, usual_s: float) -> None:
-        """Take over what this cycle brought, after the drives."""
-        if not self._shared:
-            self.answer.settle(usual_s)
+    def settle(self) -> None:
+        """Take over what this cycle brought."""
         if self.answer.age == 0 and self.answer.content is not None:
             self.position = self._counter.take(self.answer.content[self._place])

@@ -13,7 +13,7 @@ from backend.rigs.canopen.cia402 import Goal
 from backend.rigs.canopen.commissioning import Commissioned, commission, unwatch
 from backend.rigs.canopen.configuration import HEARTBEAT_MS
 from backend.rigs.canopen.cycle import Cycle
-from backend.rigs.canopen.drive import SILENT_CYCLES, DriveChannel
+from backend.rigs.canopen.drive import DriveChannel
 from backend.rigs.canopen.emergency import error_words, fault_of
 from backend.rigs.canopen.identity import Device, Place, device_of, mismatches, places
 from backend.rigs.canopen.nodes import Node, NodeError
@@ -132,10 +132,10 @@ class CanopenRig:
         motor, stiffness, link = parts.motor, parts.stiffness, parts.link
         motor.command(motor_torque)
         stiffness.command(stiffness_torque)
-        usual_s = cycle.turn()
-        motor.settle(usual_s, cycle.sent)
-        stiffness.settle(usual_s, cycle.sent)
-        link.settle(usual_s)
+        taken = cycle.turn()
+        motor.settle(taken)
+        stiffness.settle(taken)
+        link.settle()
         return Measured(
             link.position,
             motor.position,
@@ -195,7 +195,7 @@ class CanopenRig:
         if self._parts is None:
             return
         channels = {"motor": self._parts.motor, "stiffness": self._parts.stiffness}
-        if place.axis is not None and channels[place.axis].age < SILENT_CYCLES:
+        if place.axis is not None and channels[place.axis].age < CLOSING_CYCLES:
             unwatch(node)
         node.manage("PRE-OPERATIONAL")
 

@@ -37,9 +37,15 @@ export class Baseline extends EventTarget {
     const name = this.document.scenario?.name;
     if (!name || name === this.#asked) return;
     this.#asked = name;
-    this.#loaded = await rest("GET", `/api/scenarios/${encodeURIComponent(name)}`).catch(() => null);
+    this.#loaded = await readyScenario(name).catch(() => null);
     this.dispatchEvent(new Event("change"));
   }
+}
+
+/** @returns {Promise<object|null>} a ready scenario, null if that of a rig or of a file is meant */
+async function readyScenario(name) {
+  const ready = await rest("GET", "/api/scenarios");
+  return ready.some((each) => (each.name ?? each) === name) ? rest("GET", `/api/scenarios/${encodeURIComponent(name)}`) : null;
 }
 
 function differences(from, to, path) {

@@ -1,4 +1,5 @@
 import { element, setText } from "../element.js";
+import { sentence } from "./next_step.js";
 import { RigPanel, panelButton } from "./rig_panel.js";
 
 const MOVING = new Set(["armed", "running"]);
@@ -32,6 +33,6 @@ export class ArmPanel {
     const text = reasons.join("\n");
     if (this.reasons.dataset.text === text) return;
     this.reasons.dataset.text = text;
-    this.reasons.replaceChildren(...reasons.map((reason) => element("li", {}, reason)));
+    this.reasons.replaceChildren(...reasons.map((reason) => element("li", {}, sentence(reason))));
   }
 }

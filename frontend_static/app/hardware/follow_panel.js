@@ -24,8 +24,10 @@ export class FollowPanel {
     const { operator, session } = this;
     const state = session.snapshot?.state;
     const mayMove = operator.isOnRig && operator.mayChange;
-    this.follow.disabled = !mayMove || state !== "armed";
+    const reference = session.document.value("reference");
+    const isSet = reference && !(reference.kind === "jog" && !reference.velocity);
+    this.follow.disabled = !mayMove || state !== "armed" || !isSet;
     this.hold.disabled = !operator.isOnRig || !session.isConnected || state !== "running"; // as safe as STOP: needs no control
-    setText(this.words, referenceWords(session.document.value("reference")));
+    setText(this.words, referenceWords(reference));
   }
 }

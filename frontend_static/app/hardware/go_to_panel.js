@@ -10,8 +10,8 @@ export class GoToPanel {
   /** @param {object} desk {session, operator, actions, choices} */
   constructor({ session, operator, actions, choices }) {
     Object.assign(this, { session, operator, actions, choices });
-    this.position = new NumberBox("Position", 1, 4);
-    this.speed = new NumberBox("Speed", 1, 3);
+    this.position = new NumberBox("Position to go to", 1, 4);
+    this.speed = new NumberBox("Speed at most", 1, 3);
     this.position.root.value = "0";
     this.positionUnit = element("span", { class: "form-unit" });
     this.speedUnit = element("span", { class: "form-unit" });

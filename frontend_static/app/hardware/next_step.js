@@ -22,13 +22,13 @@ export function nextStep(snapshot, operator, underWay) {
   if (underWay === "disconnect") return step("connect", "busy", "Disconnecting: drives off, then the simulation again.");
   if (!operator.isOnRig && rig.name) return step("connect", "busy", snapshot.sentence);
   if (!operator.isOnRig) return step("connect", "next", `The simulated rig runs. ${BEGIN}`);
-  const made = ofState(snapshot, rig, step);
+  const made = ofState(snapshot, rig, step, operator.session.sentence);
   return operator.mayChange ? made : notInControl(made, operator);
 }
 
-function ofState(snapshot, rig, step) {
-  const reasons = (rig.cannot_arm ?? []).join(" ");
-  switch (snapshot.state) {
+function ofState({ state }, rig, step, told) {
+  const reasons = (rig.cannot_arm ?? []).map(sentence).join(" ");
+  switch (state) {
     case "starting":
       return step("connect", "busy", "Connecting: the control process starts.");
     case "connected":
@@ -47,11 +47,11 @@ function ofState(snapshot, rig, step) {
     case "stopped":
     case "fault": {
       const stands = (rig.faults ?? []).some((fault) => fault.stands);
-      const words = stands ? `${sentence(snapshot.sentence)} No Reset while a cause stands.` : snapshot.sentence;
+      const words = stands ? `${sentence(told)} No Reset while a cause stands.` : sentence(told);
       return step(rig.homed ? "arm" : "home", "fault", words, "reset", !stands);
     }
     default:
-      return step("connect", "busy", snapshot.sentence);
+      return step("connect", "busy", told);
   }
 }
 
@@ -63,8 +63,8 @@ function notInControl({ at, tone, words }, { control, session, why }) {
   return { at, tone: tone === "fault" ? tone : "refused", words: sentences, action, isPossible: true };
 }
 
-/** A clause as a sentence. */
-function sentence(words) {
+/** @returns {string} a clause as a sentence */
+export function sentence(words) {
   const text = words.charAt(0).toUpperCase() + words.slice(1);
   return /[.!]$/.test(text) ? text : `${text}.`;
 }

@@ -1,4 +1,5 @@
 import { arrange, element, setText } from "../element.js";
+import { RigAdd } from "./rig_add.js";
 import { RigPanel, panelButton } from "./rig_panel.js";
 
 const CHOSEN = "vssea.rig";
@@ -7,9 +8,9 @@ const CHOSEN = "vssea.rig";
 export class RigList {
   #lines = new Map();
 
-  /** @param {object} desk {session, operator, actions, rigs} */
-  constructor({ session, operator, actions, rigs }) {
-    Object.assign(this, { session, operator, actions, rigs });
+  /** @param {object} desk {session, operator, actions, rigs, ask} */
+  constructor({ session, operator, actions, rigs, ask }) {
+    Object.assign(this, { session, operator, actions, rigs, ask });
     this.chosen = localStorage.getItem(CHOSEN);
     this.lines = element("div", { class: "rig-lines", role: "radiogroup", "aria-label": "Rigs" });
     this.empty = element("p", { class: "hint" });
@@ -17,10 +18,14 @@ export class RigList {
     this.connectButton.classList.add("start");
     this.checkButton = panelButton("Check", () => this.#check(), "Ask who answers and compare; nothing is written, nothing moves");
     this.disconnectButton = panelButton("Disconnect", () => this.panel.tell(this.actions.disconnect()));
-    this.buttons = element("div", { class: "rig-buttons" }, this.connectButton, this.checkButton, this.disconnectButton);
+    this.editButton = panelButton("File", () => this.#edit(), "See or change its file");
+    this.removeButton = panelButton("Remove", () => this.#remove(), "Delete its file");
+    for (const button of [this.editButton, this.removeButton]) button.classList.add("quiet");
+    this.buttons = element("div", { class: "rig-buttons" }, this.connectButton, this.checkButton, this.editButton, this.removeButton, this.disconnectButton);
+    this.add = new RigAdd(rigs, (name) => this.#choose(name));
     this.found = element("div", { class: "rig-check", role: "status" });
     this.devices = element("dl", { class: "rig-devices", "aria-label": "Who answers" });
-    this.panel = new RigPanel("Rig", this.lines, this.empty, this.buttons, this.found, this.devices);
+    this.panel = new RigPanel("Rig", this.lines, this.empty, this.buttons, this.found, this.devices, this.add.root);
     this.root = this.panel.root;
     rigs.addEventListener("change", () => this.#show());
     operator.addEventListener("change", () => this.#show());
@@ -46,6 +51,8 @@ export class RigList {
     this.connectButton.disabled = isBusy || !this.session.isConnected || Boolean(chosen?.problem);
     setText(this.connectButton, this.actions.underWay === "connect" ? "Connecting…" : "Connect");
     this.checkButton.disabled = isBusy || !this.session.isConnected || Boolean(chosen?.problem);
+    this.editButton.hidden = this.removeButton.hidden = isOnRig || !chosen || chosen.builtin === true;
+    this.add.root.hidden = isOnRig;
     this.disconnectButton.hidden = !isOnRig;
     this.disconnectButton.disabled = isBusy || !this.operator.mayChange;
     this.disconnectButton.title = this.operator.why || "Drives off, bus closed, back to the simulation";
@@ -83,6 +90,19 @@ export class RigList {
   #connect() {
     this.found.replaceChildren();
     return this.panel.tell(this.actions.connect(this.chosen));
+  }
+
+  async #edit() {
+    try {
+      this.add.show(await this.rigs.text(this.chosen));
+    } catch (refusal) {
+      this.panel.say(refusal.message);
+    }
+  }
+
+  async #remove() {
+    const name = this.chosen;
+    if (await this.ask.sure(`Remove ${name}?`, "Its file is deleted.", "Remove")) await this.panel.tell(this.rigs.remove(name));
   }
 
   async #check() {

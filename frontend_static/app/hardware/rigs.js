@@ -25,6 +25,23 @@ export class Rigs extends EventTarget {
     this.dispatchEvent(new Event("change"));
   }
 
+  /** Keep a rig's file. @throws {Refusal} */
+  async keep(name, text) {
+    await rest("PUT", `/api/rigs/${encodeURIComponent(name)}`, text, undefined, { "content-type": "application/toml" });
+    await this.refresh();
+  }
+
+  /** @returns {Promise<string>} the text of a rig's file @throws {Refusal} */
+  async text(name) {
+    return (await rest("GET", `/api/rigs/${encodeURIComponent(name)}`)).text;
+  }
+
+  /** Forget a rig. @throws {Refusal} */
+  async remove(name) {
+    await rest("DELETE", `/api/rigs/${encodeURIComponent(name)}`);
+    await this.refresh();
+  }
+
   /** Ask who answers, without touching anything. @returns {Promise<{ok: boolean, lines: object[]}>} @throws {Refusal} */
   check(name) {
     return rest("POST", `/api/rigs/${encodeURIComponent(name)}/check`, {}, CHECK_LIMIT_MS);

@@ -41,6 +41,11 @@ export class LiveSession extends EventTarget {
     return this.connection.isOpen;
   }
 
+  /** What the session does, and why, with “you” for this page. */
+  get sentence() {
+    return (this.snapshot?.sentence ?? "").replace(`by ${this.you} `, "by you ");
+  }
+
   start() {
     this.connection.open();
   }

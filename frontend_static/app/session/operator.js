@@ -15,7 +15,7 @@ export class Operator extends EventTarget {
   #known = "";
   #timer = null;
   #unanswered = 0;
-  #wasYou = false;
+  #wasOperating = false;
 
   /** @param {import("./live_session.js").LiveSession} session */
   constructor(session) {
@@ -86,9 +86,10 @@ export class Operator extends EventTarget {
 
   #look() {
     const { isYou, control, rig, session } = this;
-    if (isYou && !this.#wasYou) this.#resume();
-    if (!isYou || !session.isConnected) this.#end();
-    this.#wasYou = isYou && session.isConnected;
+    const isOperating = isYou && session.isConnected && rig.name !== null; // without a rig, control is let go of
+    if (isOperating && !this.#wasOperating) this.#resume();
+    if (!isOperating) this.#end();
+    this.#wasOperating = isOperating;
     const now = JSON.stringify([session.isConnected, session.you, control.needed, control.operator, control.asking, rig.kind, rig.name, rig.connected]);
     if (now === this.#known) return;
     this.#known = now;
@@ -96,7 +97,7 @@ export class Operator extends EventTarget {
   }
 
   #resume() {
-    if (this.isYou) this.begin();
+    if (this.isYou && this.rig.name !== null) this.begin();
   }
 
   #silence() {

@@ -30,7 +30,7 @@ export class StateLine {
     if (!snapshot) return this.#say("connecting", "Connecting", "to the session");
     if (!isConnected) return this.#say("lost", "No connection", "what is shown is old");
     const word = WORDS[snapshot.state] ?? snapshot.state;
-    const sentence = snapshot.sentence.replace(`by ${this.session.you} `, "by you ");
+    const { sentence } = this.session;
     const rest = sentence.toLowerCase().startsWith(word.toLowerCase())
       ? sentence.slice(word.length).replace(/^[,:.\s]+/, "")
       : sentence;
