@@ -68,6 +68,7 @@ def create_app(settings: Settings) -> FastAPI:
         gc.collect()
         gc.freeze()  # a collection of all that was imported would stall STOP for tens of milliseconds
         yield
+        await session.rig.close()  # first of all: nothing may move without its pages
         await scene.stop()
         await replay.stop()
         await library.stop()

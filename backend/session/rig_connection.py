@@ -1,6 +1,7 @@
 """Going from the simulation to a rig and back: one control process ends before the other begins, on the same ring."""
 
 import asyncio
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 Message = dict[str, Any]
 CONNECT_LIMIT_S = 30.0
+REPORT_LIMIT_S = 2.0
 
 
 class RigFiles(Protocol):
@@ -87,7 +89,7 @@ class RigConnection:
         if session.rig.file is not None:
             session.rig.state.leaving = True
             await session.link.stop(messages.Disconnect())
-            await session.rig.control.heart.end()
+            await session.rig.control.end()
 
     async def _connect(self, name: str, by: str, key: str | None) -> Message:
         session = self._session
@@ -123,7 +125,10 @@ class RigConnection:
         number = session.status.tuning_id + 1
         connect = messages.Connect(file, begun.scenario, begun.prepared, number)
         await session.link.command(connect, CONNECT_LIMIT_S)
-        session.status.tuning_id = number
+        session.status.tuning_id, session.status.pace = number, 1.0
+        with suppress(TimeoutError):  # which kind of rig it is comes a moment after the answer
+            async with asyncio.timeout(REPORT_LIMIT_S):
+                await session.rig.state.reported.wait()
 
     def _adopt(self, file: RigFile, begun: Begun, by: str) -> None:
         session = self._session

@@ -1,5 +1,6 @@
 """What the session knows of its rig: its file, its newest report, and what is really in force there."""
 
+import asyncio
 from dataclasses import asdict
 from typing import Any
 
@@ -23,6 +24,8 @@ class RigState:
         """Whether its control process has ended, so that it has to be connected anew."""
         self.leaving = False
         """Whether it is being disconnected: that it stops is no news."""
+        self.reported = asyncio.Event()
+        """Set once a control process has said how the rig is."""
         self.report: RigReport | None = None
         self._state: State | None = None
         self._told_in: State | None = None
@@ -33,6 +36,7 @@ class RigState:
         """Know the rig that is being connected."""
         self.end()
         self.file, self.connecting = file, True
+        self.reported.clear()
 
     def up(self, scenario: Scenario) -> None:
         """Know that it is connected, with a scenario in force."""
@@ -50,6 +54,7 @@ class RigState:
     def take(self, report: RigReport) -> bool:
         """Take the newest report; return whether it says something new beyond its figures."""
         before, self.report = self.report, report
+        self.reported.set()
         is_first, self._told_in = self._told_in != self._state, self._state
         return is_first or before is None or _words(before) != _words(report)
 
@@ -80,7 +85,8 @@ class RigState:
         file, report = self.file, self.report
         if file is None:
             return dict(SIMULATED)
-        known = {"kind": self.kind, "label": LABELS[self.kind], "name": file.name, "connected": self.connected}
+        label = LABELS[self.kind] if report is not None else f"rig {file.name}"
+        known = {"kind": self.kind, "label": label, "name": file.name, "connected": self.connected}
         known |= {
             "limits": file.limits.model_dump(mode="json"), "rate_hz": file.rate_hz,
             "gear_ratio": scenario.actuator.motor.gear_ratio, "torque_constant": file.motor.torque_constant,

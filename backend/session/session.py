@@ -148,6 +148,7 @@ class Session:
     async def start_control(self) -> None:
         """Start the control process; nothing runs in it yet. Raises Problem if it ends or takes too long."""
         await self.link.start(self.ring_name, self.flag.name, epoch=self.status.epoch)
+        self.status.pace = 1.0
 
     async def _warm_workers(self) -> None:
         """Start the workers beside the control process; a worker that fails to start is tried again when it is needed."""

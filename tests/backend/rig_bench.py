@@ -76,7 +76,9 @@ class ScriptedRig:
         match command:
             case messages.Connect(scenario=scenario):
                 self.scenario, self.wanted, self.epoch = scenario, scenario.reference, self.epoch + 1
-                self.become("connected", homed=False)
+                self.state = "connected"
+                self.tell(Changed("connected", None, self.epoch, self.time_s))
+                asyncio.get_running_loop().call_soon(self.tell, self.report)  # after the answer, as the real one
             case messages.Home():
                 self.become("homing")
                 self.become("ready", homed=True, cannot_arm=())

@@ -42,6 +42,19 @@ def test_a_fault_asks_for_the_good_tuning_only_where_another_one_was_being_tried
     assert not good.enter("fault", A)
 
 
+def test_moving_and_holding_are_one_stretch_and_a_quiet_end_of_a_trial_is_no_fault_of_it() -> None:
+    good, clock = armed()
+    for state in ("running", "armed"):
+        clock.now += PROVED_S / 2.0
+        good.enter(state, A)  # type: ignore[arg-type]
+    assert good.last == A
+    good.install(B)
+    clock.now += 1.0
+    good.enter("stopping", B)
+    good.enter("ready", B)
+    assert not good.enter("fault", B)
+
+
 def test_a_good_tuning_keeps_its_rank_through_a_fault() -> None:
     good, clock = armed()
     clock.now += PROVED_S
@@ -89,8 +102,10 @@ def test_a_session_goes_back_to_the_good_tuning_as_a_change_and_stays_at_fault(d
 
 def test_a_simulation_keeps_the_tuning_that_diverged(data_dir: Path) -> None:
     async def work(bench: RigBench) -> None:
-        tuning = bench.session.scenario.tuning
+        await bench.ask("reset")
         await bench.passed(PROVED_S + 0.1)
+        await bench.ask("tune", changes={"observer.bandwidth": 90.0})
+        tuning = bench.session.scenario.tuning
         await bench.ask("set_disturbances", replace={"link": [{"kind": "constant", "torque": 200.0}]})
         assert bench.switching.simulation is not None
         for _ in range(3000):

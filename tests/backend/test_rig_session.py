@@ -112,11 +112,30 @@ def test_a_refused_rig_leaves_the_simulation_with_the_sentence(data_dir: Path) -
         assert bench.session.scenario == before
         assert bench.switching.started == [RIG_ENTRY, "simulation"]
         assert bench.switching.simulation is not None
+        assert snapshot["control"]["operator"] is None
         await bench.ask("pause")  # a simulation as any
         assert bench.snapshot()["state"] == "paused"
         problem = await refused(bench, "connect_rig", rig="nobody")
         assert problem.status == 404
         assert bench.snapshot()["state"] == "paused"  # refused before anything ended
+
+    at_rig(data_dir, work)
+
+
+def test_a_control_process_that_dies_while_it_connects_is_an_answer_and_no_fault(data_dir: Path) -> None:
+    async def work(bench: RigBench) -> None:
+        opened = bench.session.rig.connection._open
+
+        async def dying(*arguments: Any) -> None:
+            await opened(*arguments)
+            bench.switching.die()
+            raise Problem(503, "No answer", "The control process does not answer.")
+
+        bench.session.rig.connection._open = dying  # type: ignore[method-assign]
+        problem = await refused(bench, "connect_rig", rig="emulator")
+        assert (problem.status, problem.detail) == (503, "The control process does not answer. The simulation is back.")
+        assert bench.snapshot()["state"] == "running"
+        assert bench.events("fault") == []
 
     at_rig(data_dir, work)
 
@@ -134,6 +153,7 @@ def test_disconnecting_brings_back_what_ran_and_history_begins_anew_both_ways(da
         assert [type(said) for said in bench.switching.farewells] == [messages.Disconnect]
         assert bench.session.scenario == before
         assert bench.snapshot()["state"] == "running"
+        assert bench.snapshot()["control"] == {"needed": False, "operator": None, "asking": [], "expires_in_s": None}
         assert bench.session.status.epoch > epoch + 1  # the rig's run, then one of the simulation
         assert (await refused(bench, "undo")).title == "Nothing to undo"
         assert bench.diary.of(Run)[-1].rig == "simulated"
@@ -487,6 +507,7 @@ def test_news_of_the_rig_reach_pages_at_once_and_figures_with_the_next_state(dat
 
 def test_a_dead_control_process_is_a_fault_and_reset_connects_anew(data_dir: Path) -> None:
     async def work(bench: RigBench) -> None:
+        await bench.ask("save_preset", name="slow")
         await bench.to("armed")
         await bench.ask("tune", changes={"observer.bandwidth": 90.0})
         bench.switching.die()
@@ -501,7 +522,7 @@ def test_a_dead_control_process_is_a_fault_and_reset_connects_anew(data_dir: Pat
         assert isinstance(connect, messages.Connect)
         assert connect.scenario.tuning.observer.bandwidth == 90.0  # type: ignore[union-attr]
 
-    at_rig(data_dir, work, rigs=Shelf(EMULATOR.model_copy(update={"preset": "none"})))
+    at_rig(data_dir, work, rigs=Shelf(EMULATOR.model_copy(update={"preset": "slow"})))
 
 
 def test_after_a_dead_control_process_a_reset_may_fail_and_be_tried_again_or_the_rig_be_left(data_dir: Path) -> None:

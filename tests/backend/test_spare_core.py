@@ -42,6 +42,17 @@ def test_workers_leave_a_core_free_also_those_that_start_later_and_get_it_back()
     assert machine.bound[11] == frozenset({0, 1, 2})  # it is no more
 
 
+def test_another_process_with_the_number_of_one_that_ended_is_bound_too() -> None:
+    machine = Machine()
+    spare = machine.spare()
+    spare.keep()
+    machine.workers = [12]
+    spare.keep()
+    machine.workers = [11, 12]
+    spare.keep()
+    assert machine.calls == 3
+
+
 def test_where_it_is_refused_or_there_is_one_core_everything_goes_on() -> None:
     machine = Machine()
     machine.refuses = {11, 12}
