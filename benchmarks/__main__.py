@@ -22,6 +22,10 @@ BENCHMARKS = {
         "benchmarks.recordings",
         "an hour's recording: written, opened, drawn, exported, beside the public mcap reader",
     ),
+    "emulator": (
+        "benchmarks.emulator",
+        "the emulated rig: SYNC to the last answer at 500 Hz and 1 kHz, processor time",
+    ),
     "faults": (
         "benchmarks.rigs.campaign",
         "every fault in every activity on an emulated rig: time to safe torque, peaks",

@@ -100,9 +100,9 @@ def simulate_rows(scenario: Scenario, tuning_id: int, folder: str) -> str:
 
 
 def try_tuning(present: Scenario, candidate: Scenario) -> dict[str, Any]:
-    """Return how a tuning does beside the present one. Raises ValueError if its sampled loop is unstable by its own model."""
+    """Return how a tuning does beside the present one, with its margins. Raises ValueError if its own loop is unstable."""
     refuse_unstable(candidate)
-    return compared_tunings(present, candidate)
+    return compared_tunings(present, candidate) | {"margins": margins_of(candidate)}
 
 
 def export_controller(scenario: Scenario, form: str) -> tuple[str, bytes]:

@@ -3,22 +3,34 @@
 from typing import Any
 
 from backend.emulator.emulator import Emulator
-from backend.emulator.faults import FAULTS, Faults, RefusedRequest
+from backend.emulator.faults import FAULTS, Faults, RefusedRequest, load
 
 VALUES = ("value", "share", "ms", "rad", "code", "factor", "torque")
 """Names under which a fault's value may come."""
+KEYS = ("do", "name", "node", "axis", "which", *VALUES)
+"""What a request may say; `axis` or `which` is motor, stiffness or link, another name for a node."""
 AXIS_NODES = {"motor": 1, "stiffness": 2, "link": 3}
 
 
 def answer(emulator: Emulator, faults: Faults, request: dict[str, Any]) -> dict[str, Any]:
     """Do what a request says and return the reply; a request that cannot be done gets {"error": sentence}."""
+    try:
+        return _done(emulator, faults, request)
+    except RefusedRequest as refusal:
+        return {"error": str(refusal)}
+
+
+def _done(emulator: Emulator, faults: Faults, request: dict[str, Any]) -> dict[str, Any]:
+    unknown = [key for key in request if key not in KEYS]
+    if unknown:
+        raise RefusedRequest(f"{unknown[0]!r} is not known; expected {', '.join(KEYS)}")
     match request.get("do"):
         case "fault":
-            try:
-                faults.set(str(request.get("name")), _value(request), _node(request))
-            except RefusedRequest as refusal:
-                return {"error": str(refusal)}
+            faults.set(str(request.get("name")), _value(request), _node(request))
             return {"ok": True, "faults": list(faults.standing)}
+        case "load":
+            load(emulator, _value(request))
+            return {"ok": True}
         case "clear":
             faults.clear()
             return {"ok": True, "faults": []}
@@ -32,7 +44,7 @@ def answer(emulator: Emulator, faults: Faults, request: dict[str, Any]) -> dict[
         case "faults":
             return {"ok": True, "faults": FAULTS}
         case other:
-            return {"error": f"{other!r} is not known; expected fault, clear, state, watch, peaks or faults"}
+            raise RefusedRequest(f"{other!r} is not known; expected fault, clear, load, state, watch, peaks or faults")
 
 
 def _value(request: dict[str, Any]) -> float | None:
@@ -47,7 +59,7 @@ def _value(request: dict[str, Any]) -> float | None:
 
 
 def _node(request: dict[str, Any]) -> int | None:
-    node, axis = request.get("node"), request.get("axis")
+    node, axis = request.get("node"), request.get("axis", request.get("which"))
     if axis is not None:
         if axis not in AXIS_NODES:
             raise RefusedRequest(f"there is no axis {axis!r}; expected motor, stiffness or link")

@@ -10,11 +10,19 @@ Receive = Callable[[int, bytes, float], None]
 
 
 class CanInterface:
-    """Frames of `can.Bus(interface=..., channel=...)`; the interface must have a file to wait for, as socketcan has."""
+    """Frames of `can.Bus(interface=..., channel=...)`, which must have a file to wait for, as socketcan has. Raises OSError."""
 
     def __init__(self, interface: str, channel: str, selector: selectors.BaseSelector, receive: Receive) -> None:
-        self._bus, self._selector, self._receive = can.Bus(interface=interface, channel=channel), selector, receive
-        selector.register(self._bus.fileno(), selectors.EVENT_READ, self._ready)
+        self._selector, self._receive = selector, receive
+        try:
+            self._bus = can.Bus(interface=interface, channel=channel)
+        except can.CanError as error:
+            raise OSError(str(error)) from error
+        try:
+            selector.register(self._bus.fileno(), selectors.EVENT_READ, self._ready)
+        except NotImplementedError as error:
+            self._bus.shutdown()
+            raise OSError(f"{interface} cannot be waited for; expected an interface such as socketcan") from error
 
     def send(self, can_id: int, data: bytes) -> None:
         """Send a frame."""

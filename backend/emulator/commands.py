@@ -35,8 +35,11 @@ def run(
     where = f"127.0.0.1:{port}" if interface == "socketcand" else channel
     try:
         run_emulator(options, started=lambda _: typer.echo(f"Emulated rig on {interface} {where}  (Ctrl+C ends it)"))
-    except (OSError, ValueError) as error:  # python-can's errors are OSErrors or ValueErrors
-        _refuse(f"{interface} {where} cannot be opened: {error}; is an emulator running there already?")
+    except OSError as error:
+        hint = (
+            "is an emulator running there already" if interface == "socketcand" else "does `ip link` list the channel"
+        )
+        _refuse(f"{interface} {where} cannot be opened: {error}; {hint}?")
 
 
 @emulator.command()
@@ -54,6 +57,14 @@ def fault(
 def clear(context: typer.Context) -> None:
     """Take all faults back; a drive's fault still waits for its reset."""
     _show(context, {"do": "clear"})
+
+
+@emulator.command()
+def load(
+    context: typer.Context, torque: Annotated[float, typer.Argument(help="N·m; positive opposes positive motion.")]
+) -> None:
+    """Load the link with a torque that stays; 0 takes it off."""
+    _show(context, {"do": "load", "value": torque})
 
 
 @emulator.command()

@@ -24,7 +24,7 @@ FAULTS = {
     "link_lost": "silence both ways",
     "node_reboot": "a node (1) restarts and has lost its configuration",
     "torque_saturated": "share of its peak torque that a drive, of the node (1), gives at most (0.05)",
-    "wrong_inertia": "factor on the inertias of motor and link, or of the node's axis only (3)",
+    "wrong_inertia": "factor on the inertia of the link, or of the motor with node 1 (3)",
     "end_stop": "N·m that push the stiffness motor towards its soft end stop, or the stiff one if negative (1)",
 }
 """Every fault and what its value means, with the value or node that is taken if none is given."""
@@ -131,9 +131,11 @@ class Faults:
     def _wrong_inertia(self, value: float | None, node: int | None) -> None:
         factor, plant = _within(value, 3.0, 0.05, 50.0, "as a factor"), self._emulator.plant
         if node not in (None, 1, 3):
-            raise RefusedRequest(f"node {node} has no inertia to change; expected 1 (motor), 3 (link) or none for both")
-        plant.motor_factor = factor if node != 3 else plant.motor_factor
-        plant.link_factor = factor if node != 1 else plant.link_factor
+            raise RefusedRequest(f"node {node} has no inertia to change; expected 1 (motor) or 3 (link)")
+        if node == 1:
+            plant.motor_factor = factor
+        else:
+            plant.link_factor = factor
         plant.reform()
 
     def _end_stop(self, value: float | None, _node: int | None) -> None:
@@ -142,6 +144,11 @@ class Faults:
 
 def _share(value: float | None, usual: float) -> float:
     return _within(value, usual, 0.0, 1.0, "as a share")
+
+
+def load(emulator: Emulator, torque: float | None) -> None:
+    """Load the link with a torque [N m] that stays; nothing is wrong with that. Raises RefusedRequest."""
+    emulator.plant.load(_within(torque, 0.0, -100.0, 100.0, "N·m"))
 
 
 def _within(value: float | None, usual: float, low: float, high: float, unit: str) -> float:

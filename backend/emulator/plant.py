@@ -8,7 +8,8 @@ import numpy as np
 from backend.emulator import plant_kernel as kernel
 from vssea_core.actuator.parameters import Actuator, EquilibriumMotor
 from vssea_core.actuator.spring import stiffness_motor_position
-from vssea_core.signals.disturbances import ROW_SIZE
+from vssea_core.signals.disturbances import ROW_SIZE, disturbance_rows
+from vssea_core.signals.documents import ConstantDisturbance
 from vssea_core.simulation.state import drive_numbers, plant_numbers
 
 MOTOR, STIFFNESS, LINK = 0, 1, 2
@@ -38,7 +39,8 @@ class EmulatedPlant:
         self._stiffness = stiffness
         self._state = np.zeros(kernel.STATE_SIZE + 2)
         self._axes = np.zeros((2, kernel.AXIS_SIZE))
-        self._loads = np.zeros((0, ROW_SIZE))
+        self._link_loads, self._motor_loads = np.zeros((1, ROW_SIZE)), np.zeros((0, ROW_SIZE))
+        self.load(0.0)
         self._record = np.zeros(kernel.RECORD_SIZE)
         self.reform()
         self._rest()
@@ -77,7 +79,9 @@ class EmulatedPlant:
         if duration_s > CATCH_UP_S:
             self.skipped_s += duration_s - CATCH_UP_S
             duration_s = CATCH_UP_S
-        if not kernel.advance(self._numbers, self._state, self._axes, self._loads, self._record, duration_s):
+        if not kernel.advance(
+            self._numbers, self._state, self._axes, self._link_loads, self._motor_loads, self._record, duration_s
+        ):
             self.holds = False  # the spring's law has ended: put the actuator back to rest, and say so
             self._rest()
 
@@ -119,6 +123,10 @@ class EmulatedPlant:
     def cap(self, axis: int, torque: float) -> None:
         """Limit what an axis gives [N m]."""
         self._axes[axis, kernel.CAP] = torque
+
+    def load(self, torque: float) -> None:
+        """Load the link [N m]; positive opposes positive motion, as in Eq. (1)."""
+        self._link_loads[:] = disturbance_rows([ConstantDisturbance(torque=torque)], kernel.FINE_STEP_S)
 
     def push(self, torque: float) -> None:
         """Push the stiffness motor from outside [N m]; positive is towards softer."""

@@ -53,11 +53,11 @@ def capped(axis, torque):
 
 
 @entry
-def advance(numbers, state, axes, loads, record, duration_s):
+def advance(numbers, state, axes, link_loads, motor_loads, record, duration_s):
     """Advance `state` by `duration_s` in place, with its thermal averages; return whether it is still a spring that holds.
 
-    `numbers` are Plant, Drives, torque-loop lag and thermal time; `axes` (2, AXIS_SIZE) motor and stiffness motor; `loads`
-    an empty table of disturbances; `record` the largest magnitudes so far.
+    `numbers` are Plant, Drives, torque-loop lag and thermal time; `axes` (2, AXIS_SIZE) motor and stiffness motor; the
+    loads are tables of constant disturbances; `record` holds the largest magnitudes so far.
     """
     plant = Plant(*to_fixed_tuple(numbers[:PLANT_NUMBERS], PLANT_NUMBERS))
     drives = Drives(*to_fixed_tuple(numbers[PLANT_NUMBERS:LAG_AT], DRIVE_NUMBERS))
@@ -93,7 +93,7 @@ def advance(numbers, state, axes, loads, record, duration_s):
         tau_ms, bits = limit_stiffness_torque(drives, heat, tau_ms, now.omega_ms)
         if bits != 0:
             stiffness[LIMITED] = 1.0
-        now, _loads = advance_plant(plant, lags, now, tau_e, tau_ms + stiffness[PUSH], loads, loads, 0.0, h)
+        now, _loads = advance_plant(plant, lags, now, tau_e, tau_ms + stiffness[PUSH], link_loads, motor_loads, 0.0, h)
         heat = warmed(drives, heat, tau_e, tau_ms)
         motor[GIVEN], stiffness[GIVEN] = now.motor_torque, tau_ms
         total = now.theta_l + now.omega_l + now.theta_e + now.omega_e + now.theta_ms + now.omega_ms + now.motor_torque

@@ -12,7 +12,7 @@ BLEND_S = 0.1
 """Time [s] over which the motor's torque is blended in."""
 ENABLE_S = 1.0
 """Time [s] in which both drives have to come into operation."""
-MOVING_LINK, MOVING_MOTOR, MOVING_STIFFNESS = 0.3, 0.05, 5.0
+MOVING_LINK, MOVING_MOTOR, MOVING_STIFFNESS = 0.2, 0.05, 5.0
 """rad/s above which link, motor and stiffness motor count as moving."""
 
 

@@ -240,9 +240,9 @@ class Conduct:
 
     def _torques(self, row: NDArray[np.float64], now: float) -> tuple[float, float]:
         on = self.on
-        if self.state == "homing":
+        if self.homing is not None:
             on.tick(law.READING, 0.0, row)
-            return 0.0, self._home_on(now)
+            return 0.0, self._home_on(self.homing, now)
         if self._release is not None:
             on.tick(law.READING, 0.0, row)
             torque = self._release.torque(now)
@@ -273,15 +273,15 @@ class Conduct:
             brakes, share, holds = course
             course_mode = law.BRAKING if brakes else law.STIFFNESS_HOLDS if holds else law.READING
         motor_torque, stiffness_torque = on.tick(course_mode, 1.0, row)
-        if self.state == "stopping" and stopping.over(now):
+        if self.state in ("stopping", "homing") and stopping.over(now):
             self._end_stop()
         if stopping.off:
             self._stopping = None
         return share * motor_torque if brakes else 0.0, stiffness_torque if holds else 0.0
 
-    def _home_on(self, now: float) -> float:
-        on, homing = self.on, self.homing
-        if homing is None or not on.axes.enabled("stiffness"):
+    def _home_on(self, homing: HomingLaw, now: float) -> float:
+        on = self.on
+        if not on.axes.enabled("stiffness"):
             if now >= self._enable_until:
                 self._note(ENABLE_TIMEOUT, f"stiffness drive: {on.axes.status['stiffness'].words}")
             return 0.0
@@ -292,11 +292,10 @@ class Conduct:
             self._note(HOMING, homing.failure)
             return on.stiffness_torque
         if homing.phase == "homed":
-            on.axes.disarm("stiffness")
-            self.homing = None
             on.take_home(homing.offset, homing.span_found)
             self.monitors.restart()
-            self.become("ready", None)
+            self.homing, self._goal, self._stopping = None, "ready", Stopping(on.axes, now)
+            return on.stiffness_torque
         return torque
 
     def _go_on_arming(self, now: float) -> None:
@@ -380,14 +379,15 @@ class Conduct:
             on.axes.disarm("motor")
             if self.state == "ready":
                 self.become("stopping", self._reason)
-        elif self.state == "homing":
+        elif self.homing is not None:
             self._release, self.homing = Release(on.axes, on.stiffness_torque, now), None
             self.become("stopping", self._reason)
-        elif self.state in CLOSED or (self.state == "stopping" and self._stopping is None and self._release is None):
-            self._stopping = Stopping(on.axes, now)
+        elif self.state in DRIVEN:
+            if self._stopping is None and self._release is None:
+                self._stopping = Stopping(on.axes, now)
             if self.state != "stopping":
                 self.become("stopping", self._reason)
-        elif self.state != "stopping":
+        else:
             self._end_stop()
 
     def _end_stop(self) -> None:

@@ -4,6 +4,7 @@ Pure: a position in, a torque out, once a cycle. The axis is driven at a velocit
 where it stands still although that torque pushes. The stiff stop is at a smaller theta_ms than the soft one.
 """
 
+import math
 from dataclasses import dataclass
 
 from backend.rigs.rig_file import Homing
@@ -12,6 +13,7 @@ BANDWIDTH = 60.0  # rad/s of the velocity loop, less where the cycle is long
 STILL_RAD = 0.05  # rad within which the axis counts as standing
 TOO_FAR = 1.5  # times the expected span without a stop is none
 AT_REST_RAD, AT_REST_RAD_S = 0.3, 2.0  # rad, rad/s: near enough to the middle, and slow enough
+BRAKING_SHARE = 0.4  # of the torque, that braking before the middle counts on
 PUSHING = 0.99  # share of the torque from which it counts as pushing
 
 WORDS = {
@@ -38,7 +40,7 @@ class HomingLaw:
     def __init__(self, settings: Homing, stops: Stops, inertia: float, damping: float, period_s: float) -> None:
         self._settings, self._stops, self._damping, self._period_s = settings, stops, damping, period_s
         self._bandwidth = min(BANDWIDTH, 0.15 / period_s)
-        self._gain = inertia * self._bandwidth
+        self._inertia, self._gain = inertia, inertia * self._bandwidth
         self.phase = "stiff"
         self.failure = ""
         self.offset, self.span_found = 0.0, 0.0
@@ -117,7 +119,9 @@ class HomingLaw:
     def _wanted_velocity(self, position: float) -> float:
         speed = self._settings.speed
         if self.phase == "middle":
-            return max(-speed, min(speed, 0.25 * self._bandwidth * (self._middle - position)))
+            way = self._middle - position
+            brakes = math.sqrt(2.0 * BRAKING_SHARE * self._settings.torque / self._inertia * abs(way))
+            return math.copysign(min(speed, brakes, 0.25 * self._bandwidth * abs(way)), way)
         return -speed if self.phase == "stiff" else speed
 
     def _drive(self, wanted: float) -> float:

@@ -136,19 +136,19 @@ class Motion:
 
     def jog(self, link: float, stiffness: float, sent_s: float, now: float) -> None:
         """Move for as long as this is renewed; 0, 0 lets go. Raises ValueError if it is old, too fast or out of turn."""
-        if now - sent_s >= JOG_LASTS_S:
+        if not now - sent_s < JOG_LASTS_S:
             raise ValueError(
                 f"this jog is {now - sent_s:.2f} s old, expected less than {JOG_LASTS_S:g} s; it is dropped"
             )
         _check_speed(abs(link), self._limits.jog_speed, "jog")
-        if abs(stiffness) > self._limits.stiffness_jog:
+        if not abs(stiffness) <= self._limits.stiffness_jog:
             raise ValueError(
                 f"a stiffness jog of {stiffness:g} N·m/rad a second is too fast; "
                 f"expected at most {self._limits.stiffness_jog:g}"
             )
         if link != 0.0 and self.kind in ("following", "going"):
             raise ValueError(f"the link is {self.words}; hold it first, then jog")
-        self._ends_s = sent_s + JOG_LASTS_S
+        self._ends_s = min(sent_s, now) + JOG_LASTS_S
         if stiffness != self._stiffness_rate:
             if stiffness == 0.0:
                 self._release_stiffness("jog")

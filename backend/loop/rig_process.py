@@ -5,15 +5,22 @@ from multiprocessing.connection import Connection
 
 from backend.loop.real_time import compile_first, settle_down
 from backend.rigs.rig import Rig
-from backend.rigs.rig_file import RigFile
+from backend.rigs.rig_file import SIMULATED, RigFile
 from backend.telemetry.beats import Beats
 from backend.telemetry.ring import REAL_TIME, RingWriter
 from backend.telemetry.stop_flag import StopFlag
 from vssea_core.scenario import Scenario
 
+SWITCHED_ON_AT = 20.0
+"""rad that a simulated rig's stiffness encoder is off until it is homed."""
+
 
 def rig_of(file: RigFile, scenario: Scenario) -> Rig:
     """Return the rig that a file describes, not yet connected."""
+    if file.bus.interface == SIMULATED:
+        from backend.rigs.simulated import SimulatedRig
+
+        return SimulatedRig(scenario, SWITCHED_ON_AT)
     from backend.rigs.canopen.rig import CanopenRig
 
     return CanopenRig(file, scenario.actuator.motor.gear_ratio)

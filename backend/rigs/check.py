@@ -1,9 +1,11 @@
 """A look at a rig that moves nothing and writes nothing: who answers, and whether that is what its file says."""
 
+import time
+from collections.abc import Callable
 from typing import TypedDict
 
 from backend.rigs.rig import RigError
-from backend.rigs.rig_file import RigFile
+from backend.rigs.rig_file import SIMULATED, RigFile
 from vssea_core.actuator.parameters import Actuator
 
 
@@ -22,8 +24,12 @@ def line(what: str, found: str, expected: str, problem: str = "") -> CheckLine:
     return CheckLine(what=what, found=found, expected=expected, ok=not problem, sentence=problem)
 
 
-def check_rig(rig_file: RigFile, gear_ratio: float | None = None) -> list[CheckLine]:
+def check_rig(
+    rig_file: RigFile, gear_ratio: float | None = None, *, clock: Callable[[], float] = time.monotonic
+) -> list[CheckLine]:
     """Return what was found beside what the file expects; `gear_ratio` is the actuator's, the default one's if not given."""
+    if rig_file.bus.interface == SIMULATED:
+        return [line("rig", "simulated, no bus", "simulated, no bus")]
     from backend.rigs.canopen.inspection import inspected
     from backend.rigs.canopen.opening import open_bus
 
@@ -34,6 +40,6 @@ def check_rig(rig_file: RigFile, gear_ratio: float | None = None) -> list[CheckL
         return [line("CAN bus", "not open", where, str(error))]
     ratio = Actuator().motor.gear_ratio if gear_ratio is None else gear_ratio
     try:
-        return [line("CAN bus", where, where), *inspected(bus, rig_file, ratio)]
+        return [line("CAN bus", where, where), *inspected(bus, rig_file, ratio, clock)]
     finally:
         bus.shutdown()

@@ -1,4 +1,4 @@
-"""The rigs that a server knows: TOML files of a folder, and the built-in emulator."""
+"""The rigs that a server knows: TOML files of a folder, and the built-in ones."""
 
 import tomllib
 from dataclasses import dataclass
@@ -14,7 +14,8 @@ from backend.rigs.rig_file import RigFile
 FOLDER = "rigs"
 """Where the rigs are, in the data folder."""
 EMULATOR = "emulator"
-"""The built-in rig: always there, never changed."""
+BUILT_IN = (EMULATOR, "simulated")
+"""Rigs that are always there and never changed: for `vssea emulator`, and one that needs no bus at all."""
 
 
 @dataclass(frozen=True)
@@ -77,9 +78,9 @@ class RigLibrary:
         self.folder = folder
 
     def list(self) -> list[RigEntry]:
-        """Return the built-in rig and then the folder's, by name."""
-        own = [self._entry(path.stem) for path in sorted(self.folder.glob("*.toml")) if path.stem != EMULATOR]
-        return [self._builtin(), *own]
+        """Return the built-in rigs and then the folder's, by name."""
+        own = [self._entry(path.stem) for path in sorted(self.folder.glob("*.toml")) if path.stem not in BUILT_IN]
+        return [*map(_builtin, BUILT_IN), *own]
 
     def get(self, name: str) -> RigEntry:
         """Return a rig. Raises Problem (404) where there is none."""
@@ -125,10 +126,6 @@ class RigLibrary:
     def _path(self, name: str) -> Path:
         return self.folder / f"{name}.toml"
 
-    def _builtin(self) -> RigEntry:
-        text = (files("backend.rigs") / f"{EMULATOR}.toml").read_text("utf-8")
-        return RigEntry(EMULATOR, True, text, rig_file_of(text))
-
     def _entry(self, name: str) -> RigEntry:
         text = ""
         try:
@@ -143,9 +140,14 @@ class RigLibrary:
         return RigEntry(name, False, text, file)
 
 
+def _builtin(name: str) -> RigEntry:
+    text = (files("backend.rigs") / f"{name}.toml").read_text("utf-8")
+    return RigEntry(name, True, text, rig_file_of(text))
+
+
 def _refuse_builtin(name: str, what: str) -> None:
-    if name == EMULATOR:
-        raise Problem(409, "Built-in rig", f"The built-in rig {EMULATOR} cannot be {what}.")
+    if name in BUILT_IN:
+        raise Problem(409, "Built-in rig", f"The built-in rig {name} cannot be {what}.")
 
 
 def _disk(name: str, what: str, error: OSError) -> Problem:

@@ -12,6 +12,8 @@ from pydantic import Field, JsonValue, model_validator
 from vssea_core.fields import Part
 
 Sign = Literal[1, -1]
+SIMULATED = "simulated"
+"""The interface of a rig without a bus: the control process simulates it."""
 SafetyObject = Literal[0x1016, 0x6007, 0x605A, 0x605E, 0x6072]
 """Watch on this computer, reactions to lost connection, quick stop and fault, and the drive's own torque limit."""
 
@@ -19,7 +21,9 @@ SafetyObject = Literal[0x1016, 0x6007, 0x605A, 0x605E, 0x6072]
 class Bus(Part):
     """How the CAN bus is opened: the arguments of python-can's Bus, such as interface, channel, bitrate, host, port."""
 
-    interface: str = Field(description="socketcan, socketcand, slcan, pcan, kvaser ... as python-can names them.")
+    interface: str = Field(
+        description="socketcan, socketcand, slcan, pcan, kvaser ... as python-can names them; simulated: no bus."
+    )
     channel: str = Field("can0", description="Name of the channel at that interface.")
     bitrate: int | None = Field(1_000_000, description="Bits a second, where the interface sets them; null = as it is.")
     options: dict[str, JsonValue] = Field(default_factory=dict, description="Further arguments, such as host and port.")

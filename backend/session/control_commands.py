@@ -74,6 +74,12 @@ class ControlCommands:
         self._lease.take(party)
         return party
 
+    def keep(self, party: Party) -> None:
+        """Begin the lease of who has connected a rig anew, unless another one took control while that lasted."""
+        if self._lease.holder is None or self._lease.holds(party.key):
+            self._lease.take(party)
+        self.heart.beat_operator()
+
     # ---- commands
 
     async def take(self, asked: TakingControl, by: str, key: str | None) -> Message:

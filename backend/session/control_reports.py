@@ -27,7 +27,8 @@ class ControlReports:
         if isinstance(report, messages.Followed):
             self._session.parts.follow(report)
         elif isinstance(report, messages.Changed):
-            self._take_state(report)
+            if report.state == "fault" or not self._session.rig.state.leaving:
+                self._take_state(report)
         elif isinstance(report, messages.RigReport):
             self._session.rig.take(report)
         elif isinstance(report, messages.Moved):
@@ -49,6 +50,6 @@ class ControlReports:
         state = session.status.state
         severity: Severity = "fault" if state == "fault" else "warning" if state == "stopped" else "info"
         by = session.status.stopped_by or "server" if state == "stopped" else "session"
-        session.note("fault" if state == "fault" else "state", session.sentence(), by, severity)
         session.rig.changed(report)
+        session.note("fault" if state == "fault" else "state", session.sentence(), by, severity)
         session.tell_state()

@@ -85,6 +85,7 @@ class RigConnection:
         """End the rig's control process in order: drives disabled, bus closed. Without a rig nothing happens."""
         session = self._session
         if session.rig.file is not None:
+            session.rig.state.leaving = True
             await session.link.stop(messages.Disconnect())
             await session.rig.control.heart.end()
 
@@ -107,7 +108,7 @@ class RigConnection:
                 session.note("rig", f"rig {name} is not connected: {problem.detail}", by, "warning")
                 raise Problem(409 if problem.status == 422 else problem.status, "Not connected", detail) from problem
             self._adopt(file, begun, by)
-            session.rig.control.take_for_connecting(party.key)
+            session.rig.control.keep(party)
         return {"rig": file.name, "key": party.key, "tuning_id": session.status.tuning_id}
 
     async def _planned(self, name: str) -> tuple[Begun, RigFile]:

@@ -9,7 +9,7 @@ AT_REST = ("drives off", "the stiffness axis holds")
 
 def rig_sentence(state: State, reason: str | None, time_s: float, by: str | None, rig: RigState) -> str:
     """Return what the rig is doing, and why."""
-    motion = rig.report.motion if rig.report is not None else ""
+    motion = rig.motion
     match state:
         case "starting":
             return reason or f"Connecting rig {rig.name}"

@@ -37,7 +37,7 @@ class RigSession:
         self.connection = RigConnection(session, files)
         self.commands = RigCommands(session, clock)
         self.moves = RigMoves(session, self.state)
-        self.trial = TuningTrial(session, pool.simulation, pool.analysis)
+        self.trial = TuningTrial(session, pool.simulation)
         self.faults = FaultExcerpts(session, clock)
         self.good = GoodTuning(clock)
         self.cores = SpareCore(pool.process_ids)
@@ -78,6 +78,7 @@ class RigSession:
     def changed(self, report: Changed) -> None:
         """Take a change of the session's state: what follows a fault, and what must not run beside a rig under torque."""
         session = self._session
+        self.state.enter(report.state)
         if report.state == "fault" and not self.state.connecting:
             self.faults.begin(report.epoch, report.time_s, session.sentence())
         if not self.connected:

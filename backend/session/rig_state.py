@@ -3,7 +3,7 @@
 from dataclasses import asdict
 from typing import Any
 
-from backend.loop.messages import RigReport
+from backend.loop.messages import RigReport, State
 from backend.rigs.rig_file import RigFile
 from vssea_core.scenario import Scenario
 
@@ -21,7 +21,11 @@ class RigState:
         self.connecting = False
         self.lost = False
         """Whether its control process has ended, so that it has to be connected anew."""
+        self.leaving = False
+        """Whether it is being disconnected: that it stops is no news."""
         self.report: RigReport | None = None
+        self._state: State | None = None
+        self._told_in: State | None = None
         self.in_force: Scenario | None = None
         """The scenario with the reference that the rig really follows; the document's is the one that is wanted."""
 
@@ -37,12 +41,22 @@ class RigState:
     def end(self) -> None:
         """Know nothing."""
         self.file, self.report, self.in_force = None, None, None
-        self.connected = self.connecting = self.lost = False
+        self.connected = self.connecting = self.lost = self.leaving = False
+
+    def enter(self, state: State) -> None:
+        """Hear of a state; what was reported before says nothing of it."""
+        self._state = state
 
     def take(self, report: RigReport) -> bool:
         """Take the newest report; return whether it says something new beyond its figures."""
         before, self.report = self.report, report
-        return before is None or _words(before) != _words(report)
+        is_first, self._told_in = self._told_in != self._state, self._state
+        return is_first or before is None or _words(before) != _words(report)
+
+    @property
+    def motion(self) -> str:
+        """What the link does, in words; "" until the present state has told it."""
+        return self.report.motion if self.report is not None and self._told_in == self._state else ""
 
     @property
     def name(self) -> str:

@@ -25,8 +25,8 @@ TIME_LIMIT_S = 30.0
 class TuningTrial:
     """Changes nothing; both are simulated from rest in the simulation worker."""
 
-    def __init__(self, session: "Session", simulation: Worker, analysis: Worker) -> None:
-        self._session, self._simulation, self._analysis = session, simulation, analysis
+    def __init__(self, session: "Session", simulation: Worker) -> None:
+        self._session, self._simulation = session, simulation
 
     async def run(self, asked: Trial, by: str) -> Message:
         """Return whether a changed tuning does well, in words and figures. Raises Problem if a value is out of range."""
@@ -37,15 +37,18 @@ class TuningTrial:
             answer: Message = await self._simulation.run("try_tuning", present, candidate, time_limit_s=TIME_LIMIT_S)
         except JobRefusedError as refusal:
             sentence = str(refusal)
+            why = f"{sentence[:1].upper()}{sentence[1:].rstrip('.')}."
             return {
                 "ok": False,
-                "sentence": f"{sentence[:1].upper()}{sentence[1:].rstrip('.')}.",
+                "sentence": why,
                 "metrics": {},
                 "limits": [],
+                "margins": None,
+                "rig": session.rig.name or None,
             }
         except JobFailedError as failure:
             raise Problem(503, "Not computed", f"The trial could not be computed: {failure}.") from failure
-        return answer | {"margins": await self._margins(candidate), "rig": session.rig.name or None}
+        return answer | {"rig": session.rig.name or None}
 
     def _scenario(self) -> Scenario:
         """Return the present tuning on the rig at rest: what it follows now, the stiffness that it has now."""
@@ -82,13 +85,6 @@ class TuningTrial:
         if file is not None:
             low, high = file.limits.stiffness_low, file.limits.stiffness_high
         return min(max(value, low), high)
-
-    async def _margins(self, candidate: Scenario) -> Message | None:
-        try:
-            found: Message = await self._analysis.run("margins_of", candidate, time_limit_s=TIME_LIMIT_S)
-        except (JobRefusedError, JobFailedError):
-            return None
-        return found
 
 
 def limited(actuator: Actuator, rig: RigFile) -> Actuator:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from backend.emulator.start import EmulatorHandle
-
 from benchmarks.live_server import Server
 from benchmarks.rigs.line import Line
 from benchmarks.rigs.operator import Operator

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from backend.emulator.start import EmulatorHandle, start_emulator
-
 from benchmarks.live_server import Server, running_server
 from benchmarks.rigs.activities import ACTIVITIES
 from benchmarks.rigs.breakages import BREAKAGES, Breakage, Case

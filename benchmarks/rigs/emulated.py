@@ -8,7 +8,6 @@ from importlib.resources import files
 from typing import Any
 
 from backend.emulator.start import EmulatorHandle, start_emulator
-
 from benchmarks.live_server import Server, running_server
 from benchmarks.rigs.operator import Operator
 

@@ -307,6 +307,22 @@ def test_a_silent_operator_is_told_of_once(data_dir: Path) -> None:
     at_rig(data_dir, work)
 
 
+def test_a_caller_whose_rig_took_long_to_connect_has_control_with_the_key_of_the_answer(data_dir: Path) -> None:
+    async def work(bench: RigBench) -> None:
+        opened = bench.session.rig.connection._open
+
+        async def slow(*arguments: Any) -> None:
+            await opened(*arguments)
+            bench.clock.now += 20.0
+
+        bench.session.rig.connection._open = slow  # type: ignore[method-assign]
+        answer = await bench.call("connect_rig", "REST", None, rig="emulator")
+        await bench.call("home_stiffness", "REST", answer["key"])
+        assert bench.snapshot()["control"]["operator"] == "REST"
+
+    at_rig(data_dir, work)
+
+
 # ---- what a rig is asked for
 
 

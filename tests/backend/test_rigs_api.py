@@ -66,14 +66,18 @@ def over_rest(folder: Path, work: Work) -> None:
 
 def test_the_built_in_rig_is_always_listed_and_others_are_kept_changed_and_deleted(data_dir: Path) -> None:
     async def work(http: httpx.AsyncClient, bench: RigBench, _: CheckWorker) -> None:
-        (emulator,) = (await http.get("/api/rigs")).json()["rigs"]
+        emulator, _ = (await http.get("/api/rigs")).json()["rigs"]
         assert (emulator["name"], emulator["builtin"], emulator["rate_hz"], emulator["interface"]) == (
             "emulator", True, 500, "socketcand",
         )  # fmt: skip
         assert emulator["file"]["limits"]["motor_torque"] == 70.0
         kept = await http.put("/api/rigs/bench", content=BENCH)
         assert (kept.status_code, kept.json()["text"]) == (200, BENCH)
-        assert [rig["name"] for rig in (await http.get("/api/rigs")).json()["rigs"]] == ["emulator", "bench"]
+        assert [rig["name"] for rig in (await http.get("/api/rigs")).json()["rigs"]] == [
+            "emulator",
+            "simulated",
+            "bench",
+        ]
         assert (await http.get("/api/rigs/bench")).json() == kept.json()
         assert bench.events("rig") == ["file of rig bench saved"]
         assert (await http.delete("/api/rigs/bench")).status_code == 204

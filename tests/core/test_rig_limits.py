@@ -15,6 +15,7 @@ from backend.rigs.simulated import SimulatedRig
 from tests.core.rig_bench import LIMITS_OF_RIG, LINK, MOTOR, STIFFNESS_MOTOR, RigBench, bits_in, column, rig_scenario
 from vssea_core.actuator.drive import Drives, Heat
 from vssea_core.actuator.spring import leaf
+from vssea_core.channels import LIMITS
 from vssea_core.scenario import Scenario
 from vssea_core.signals.documents import (
     ConstantDisturbance,
@@ -22,10 +23,13 @@ from vssea_core.signals.documents import (
     ContactDisturbance,
     Disturbances,
     JogReference,
+    Reference,
+    StiffnessReference,
 )
 from vssea_core.simulation.state import DRIVES_SIZE, drive_numbers
 from vssea_core.tick.controller import CLOSED, RigLimits
 from vssea_core.tick.limits import (
+    BLENDED,
     BOUNDS_SIZE,
     RIG_RATE,
     RIG_SPEED,
@@ -238,6 +242,30 @@ def test_a_commanded_stiffness_outside_the_range_of_the_rig_stops_at_its_border_
     bench.controller.set_stiffness(ConstantStiffness(stiffness=100.0))
     rows, _ = bench.run(800, CLOSED)
     assert "rig_stiffness" not in bits_in(rows[-100:])
+
+
+PROVOKED: dict[str, tuple[dict[str, float], Reference | StiffnessReference]] = {
+    "rig_torque": ({"motor_torque": 3.0}, JogReference(velocity=0.5)),
+    "rig_torque_rate": ({"motor_torque_rate": 60.0}, JogReference(velocity=0.5)),
+    "rig_speed": ({"motor_speed": 0.3}, JogReference(velocity=0.5)),
+    "rig_position": ({"link_high": 0.2}, JogReference(velocity=0.5)),
+    "rig_deflection": ({"deflection": 0.01}, JogReference(velocity=0.5)),
+    "rig_stiffness": ({}, ConstantStiffness(stiffness=950.0)),
+}
+
+
+@pytest.mark.parametrize("limit", [limit.name for limit in LIMITS if RIG_TORQUE <= limit.bit < BLENDED])
+def test_every_limit_of_a_rig_is_reported_when_it_acts_and_not_in_a_calm_run(limit: str) -> None:
+    narrower, asked = PROVOKED[limit]
+    calm, bench = RigBench(rig_scenario()), RigBench(rig_scenario(), LIMITS_OF_RIG._replace(**narrower))
+    for each in (calm, bench):
+        each.arm()
+    bench.rig.set_disturbances(Disturbances(link=(ConstantDisturbance(torque=4.0, start_s=0.6),)))
+    calm.controller.set_reference(JogReference(velocity=0.5))
+    change = bench.controller.set_stiffness if limit == "rig_stiffness" else bench.controller.set_reference
+    change(asked)
+    assert limit not in bits_in(calm.run(500, CLOSED)[0])
+    assert limit in bits_in(bench.run(500, CLOSED)[0])
 
 
 def test_a_motor_that_is_asked_too_much_for_too_long_is_taken_back_to_its_continuous_torque() -> None:

@@ -53,6 +53,10 @@ class FakeBus:
     def shutdown(self) -> None:
         self.closed = True
 
+    @property
+    def waiting(self) -> int:
+        return len(self._coming)
+
     def sent_to(self, can_id: int) -> list[bytes]:
         return [bytes(message.data) for message in self.sent if message.arbitration_id == can_id]
 

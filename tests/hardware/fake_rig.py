@@ -7,6 +7,7 @@ from typing import Any
 import can
 
 from backend.rigs.canopen import CanopenRig
+from backend.rigs.faults import Fault
 from backend.rigs.rig import Measured
 from backend.rigs.rig_file import Bus, RigFile, read_rig_file
 from tests.hardware.fake_bus import Clock, FakeBus, FakeDrive, FakeEncoder
@@ -61,3 +62,15 @@ class FakeRig:
         self.turn(cycles=4)
         assert self.rig.axis("motor").state == self.rig.axis("stiffness").state == "enabled"
         return self
+
+
+MOTOR_UNIT = 0.533 * 100.0 * 0.7 / 1000.0
+"""N m at the gear side in a thousandth of the motor's rated torque."""
+
+
+def ages(measured: Measured) -> tuple[int, int, int]:
+    return measured.link_age, measured.motor_age, measured.stiffness_age
+
+
+def faults(fake: FakeRig) -> list[Fault]:
+    return [fault for fault, _ in fake.rig.bus_faults()]

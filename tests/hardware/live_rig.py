@@ -16,9 +16,7 @@ def rig_file_at(port: int) -> RigFile:
     return changed(bus={"options": {"host": "127.0.0.1", "port": port}})
 
 
-def turns(
-    rig: CanopenRig, until: Callable[[Measured], bool], motor: float = 0.0, stiffness: float = 0.0
-) -> Measured:  # fmt: skip
+def turns(rig: CanopenRig, until: Callable[[Measured], bool], motor: float = 0.0, stiffness: float = 0.0) -> Measured:
     """Exchange, each cycle as soon as the one before it is answered, until something is measured."""
     for _ in range(MOST_CYCLES):
         measured = rig.exchange(motor, stiffness)

@@ -4,7 +4,6 @@ from collections import deque
 from typing import Any
 
 import numpy as np
-from backend.rigs.simulated import SimulatedRig
 from numpy.typing import NDArray
 
 from backend.loop import messages
@@ -14,6 +13,7 @@ from backend.loop.rig_loop import RigLoop
 from backend.rigs.faults import Fault
 from backend.rigs.rig import Axis, AxisStatus, Measured
 from backend.rigs.rig_file import RigFile
+from backend.rigs.simulated import SimulatedRig
 from backend.telemetry.beats import LEASE, WEB, Beats
 from backend.telemetry.ring import Ring, RingReader, RingWriter
 from backend.telemetry.stop_flag import StopFlag

@@ -174,3 +174,9 @@ def test_a_drive_that_says_no_rated_torque_is_refused() -> None:
     with pytest.raises(RigError, match="motor drive, node 1: rated torque") as refusal:
         fake.ready()
     assert refusal.value.fault is CONFIGURATION
+
+
+def test_a_torque_limit_that_the_drive_cannot_resolve_is_refused() -> None:
+    with pytest.raises(RigError, match=r"torque_limit 0.01 N·m is less than the drive can resolve") as refusal:
+        FakeRig(changed(motor={"torque_limit": 0.01})).ready()
+    assert refusal.value.fault is CONFIGURATION

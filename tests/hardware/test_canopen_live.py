@@ -100,7 +100,7 @@ def test_a_silent_bus_is_an_age_that_counts_up(rig: CanopenRig, emulator: Emulat
 
 def test_a_drive_fault_latches_until_it_is_reset_and_nothing_arms_again(
     rig: CanopenRig, emulator: EmulatorHandle
-) -> None:  # fmt: skip
+) -> None:
     arm_both(rig)
     fault(emulator, "drive_fault", node=1, code=0x2310)
     assert faults(rig) == {MOTOR_DRIVE}
@@ -135,7 +135,7 @@ def test_a_reset_while_the_cause_stands_does_nothing(rig: CanopenRig, emulator: 
 @pytest.mark.parametrize(("name", "expected"), [("bus_off", BUS_OFF), ("node_reboot", REBOOTED)])
 def test_bus_off_and_a_restarted_node_are_told(
     name: str, expected: Fault, rig: CanopenRig, emulator: EmulatorHandle
-) -> None:  # fmt: skip
+) -> None:
     arm_both(rig)
     fault(emulator, name)
     assert expected in faults(rig)

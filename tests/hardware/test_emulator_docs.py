@@ -24,7 +24,7 @@ def test_every_fault_is_listed_with_its_usual_value() -> None:
 def test_every_command_is_shown() -> None:
     shown = CliRunner().invoke(app, ["emulator", "--help"], env={"COLUMNS": "200", "NO_COLOR": "1"}).stdout
     commands = re.findall(r"^│ ([a-z]+) ", shown[shown.index("Commands") :], re.MULTILINE)
-    assert sorted(commands) == ["clear", "fault", "faults", "peaks", "state", "watch"]
+    assert sorted(commands) == ["clear", "fault", "faults", "load", "peaks", "state", "watch"]
     for command in commands:
         assert f"vssea emulator {command}" in TEXT
 

@@ -1,6 +1,7 @@
 """The emulator as a process, met by python-can's own socketcand backend, by canopen and by the command line."""
 
 import json
+import selectors
 import socket
 import struct
 import time
@@ -14,6 +15,7 @@ from canopen.objectdictionary.datatypes import INTEGER8, INTEGER16, INTEGER32, U
 from typer.testing import CliRunner
 
 from backend.cli import app
+from backend.emulator.can_interface import CanInterface
 from backend.emulator.start import EmulatorHandle, start_emulator
 
 OBJECTS = {
@@ -166,6 +168,8 @@ def test_the_command_line_sets_shows_and_clears_faults(emulator: EmulatorHandle)
     assert json.loads(text)["faults"] == ["drive_fault"]
     assert json.loads(text)["nodes"]["2"]["last_error"] == 0x5113
     assert command("clear")[0] == 0
+    assert command("load", "0.5")[0] == 0
+    assert command("load", "0")[0] == 0
     assert json.loads(command("state")[1])["faults"] == []
     assert command("watch")[0] == 0
     assert json.loads(command("peaks")[1])["re_enabled"] is False
@@ -186,6 +190,45 @@ def test_without_an_emulator_a_command_says_how_to_start_one() -> None:
     result = CliRunner().invoke(app, ["emulator", "--port", str(port), "state"])
     assert result.exit_code == 2
     assert "start one with: vssea emulator" in result.output
+
+
+@pytest.mark.parametrize(
+    ("interface", "said"), [("socketcan", "does `ip link` list the channel?"), ("virtual", "cannot be waited for")]
+)
+def test_an_interface_that_cannot_be_is_refused_in_a_sentence(interface: str, said: str) -> None:
+    result = CliRunner().invoke(app, ["emulator", "--interface", interface, "--channel", "nosuch0"])
+    assert result.exit_code == 2
+    assert f"{interface} nosuch0 cannot be opened" in result.output
+    assert said in result.output
+
+
+def test_on_an_interface_of_the_system_frames_go_in_and_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    ours, its = socket.socketpair()
+    sent: list[can.Message] = []
+
+    class Interface:
+        """What python-can opens, with one frame in it."""
+
+        fileno, send, shutdown = its.fileno, staticmethod(sent.append), its.close
+
+        def recv(self, _timeout: float) -> can.Message:
+            its.recv(1)
+            return can.Message(arbitration_id=0x123, data=[1, 2], is_extended_id=False, timestamp=time.time())
+
+    monkeypatch.setattr(can, "Bus", lambda **_: Interface())
+    received: list[tuple[int, bytes]] = []
+    with selectors.DefaultSelector() as selector:
+        interface = CanInterface(
+            "socketcan", "vcan0", selector, lambda number, data, _: received.append((number, data))
+        )
+        ours.send(b"x")
+        for key, events in selector.select(5.0):
+            key.data(events)
+        interface.send(0x181, b"\x01")
+        interface.close()
+    ours.close()
+    assert received == [(0x123, b"\x01\x02")]
+    assert [(message.arbitration_id, bytes(message.data)) for message in sent] == [(0x181, b"\x01")]
 
 
 @pytest.mark.parametrize(

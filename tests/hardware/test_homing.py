@@ -64,6 +64,14 @@ def test_it_finds_both_stops_and_ends_at_rest_in_the_middle_of_the_range(
     assert abs(axis.omega) < 5.0
 
 
+@pytest.mark.parametrize("speed", [5.0, 150.0, 400.0])
+def test_any_speed_ends_at_rest_in_the_middle(speed: float) -> None:
+    axis = Axis(0.002)
+    assert homed(axis, SETTINGS.model_copy(update={"speed": speed, "time_limit_s": 60.0}), 60.0).phase == "homed"
+    assert axis.at == pytest.approx(70.0, abs=0.5)
+    assert abs(axis.omega) < 5.0
+
+
 def test_it_stays_within_its_torque_and_near_its_speed() -> None:
     axis = Axis(0.002)
     homed(axis)

@@ -10,7 +10,8 @@ from typer.testing import CliRunner
 from backend.cli import app
 from backend.problem import Problem
 from backend.rigs import rig_file as model
-from backend.rigs.library import EMULATOR, RigLibrary, example_text, rig_file_of
+from backend.rigs.check import check_rig
+from backend.rigs.library import BUILT_IN, RigLibrary, example_text, rig_file_of
 from backend.rigs.rig_file import RigFile
 
 DOCUMENT = (Path(__file__).parents[2] / "docs" / "rig-file.md").read_text("utf-8")
@@ -97,22 +98,27 @@ def test_a_wrong_file_is_refused_in_a_sentence_and_what_was_kept_stays(
     assert [path.name for path in library.folder.iterdir()] == ["bench.toml"]
 
 
-def test_the_emulator_is_always_there_first_and_never_changed(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", BUILT_IN)
+def test_a_built_in_rig_is_always_there_first_and_never_changed(name: str, tmp_path: Path) -> None:
     library = RigLibrary(tmp_path / "rigs")
-    assert [(entry.name, entry.builtin) for entry in library.list()] == [(EMULATOR, True)]
+    assert [(entry.name, entry.builtin) for entry in library.list()] == [(each, True) for each in BUILT_IN]
     library.put("bench", example_text())
-    assert [entry.name for entry in library.list()] == [EMULATOR, "bench"]
+    assert [entry.name for entry in library.list()] == [*BUILT_IN, "bench"]
     with pytest.raises(Problem, match="built-in"):
-        library.put(EMULATOR, example_text())
+        library.put(name, example_text())
     with pytest.raises(Problem, match="built-in"):
-        library.delete(EMULATOR)
-    (library.folder / f"{EMULATOR}.toml").write_text(example_text())
-    assert library.file(EMULATOR).bus.interface == "socketcand"
-    assert [entry.name for entry in library.list()] == [EMULATOR, "bench"]
+        library.delete(name)
+    (library.folder / f"{name}.toml").write_text(example_text())
+    assert library.file(name).name == name
+    assert [entry.name for entry in library.list()] == [*BUILT_IN, "bench"]
+
+
+def test_a_simulated_rig_needs_no_bus_to_be_checked(tmp_path: Path) -> None:
+    assert [line["ok"] for line in check_rig(RigLibrary(tmp_path).file("simulated"))] == [True]
 
 
 def test_a_rig_is_listed_as_the_page_needs_it(tmp_path: Path) -> None:
-    document = RigLibrary(tmp_path).get(EMULATOR).document()
+    document = RigLibrary(tmp_path).get("emulator").document()
     assert document["address"] == "can0 at 127.0.0.1:29536"
     assert (document["interface"], document["rate_hz"], document["builtin"]) == ("socketcand", 500, True)
     assert RigFile.model_validate(document["file"]).motor.node == 1

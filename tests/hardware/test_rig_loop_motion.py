@@ -11,6 +11,8 @@ from tests.hardware.rig_loop_bench import RigBench, T, prepared
 from vssea_core.control.tuning import StateFeedback
 from vssea_core.signals.documents import ConstantStiffness, MoveReference, SineReference, StepReference
 
+NAN = float("nan")
+
 
 @pytest.fixture
 def bench() -> Iterator[RigBench]:
@@ -72,6 +74,13 @@ def test_a_stale_jog_is_dropped_and_does_not_keep_a_jog_alive(bench: RigBench) -
     assert bench.rig.plant.theta_l < 0.2
 
 
+def test_a_jog_dated_ahead_or_not_at_all_lives_no_longer_than_any_other(bench: RigBench) -> None:
+    bench.do(messages.Jog(0.3, 0.0, bench.now + 100.0))
+    bench.until("armed", most_s=1.2)
+    bench.refused(messages.Jog(0.3, 0.0, NAN))
+    assert bench.state == "armed"
+
+
 def test_a_flood_of_jogs_is_never_a_queue(bench: RigBench) -> None:
     for _ in range(500):
         bench.send(messages.Jog(0.3, 0.0, bench.now))
@@ -100,7 +109,7 @@ def test_a_jog_comes_to_rest_before_the_limit_of_the_link(bench: RigBench) -> No
     assert bench.rig.plant.theta_l < 1.58
 
 
-@pytest.mark.parametrize(("link", "stiffness"), [(0.81, 0.0), (-0.81, 0.0), (0.0, 401.0)])
+@pytest.mark.parametrize(("link", "stiffness"), [(0.81, 0.0), (-0.81, 0.0), (0.0, 401.0), (NAN, 0.0), (0.0, NAN)])
 def test_a_jog_above_the_rigs_speed_is_refused_in_words(bench: RigBench, link: float, stiffness: float) -> None:
     assert "expected" in bench.refused(messages.Jog(link, stiffness, bench.now))
     assert bench.state == "armed"

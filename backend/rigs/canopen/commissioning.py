@@ -67,9 +67,7 @@ def _manage(node: Node, state: Literal["OPERATIONAL", "PRE-OPERATIONAL"]) -> Non
         raise RigError(CONFIGURATION, f"node {node.number} cannot be told to be {state.lower()}: {error}") from error
 
 
-def _drive(
-    place: Place, rig_file: RigFile, gear_ratio: float, node: Node, configurator: Configurator
-) -> DriveChannel:  # fmt: skip
+def _drive(place: Place, rig_file: RigFile, gear_ratio: float, node: Node, configurator: Configurator) -> DriveChannel:
     drive, axis = place.drive, place.axis
     if drive is None or axis is None:
         raise RigError(CONFIGURATION, f"{place.words} is no drive")

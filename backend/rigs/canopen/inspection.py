@@ -1,7 +1,6 @@
 """What the nodes of a bus say of themselves, beside what a rig's file expects; reads only."""
 
 import math
-import time
 from collections.abc import Callable
 
 import can
@@ -31,9 +30,7 @@ _SAFETY = (
 )
 
 
-def inspected(
-    bus: can.BusABC, rig_file: RigFile, gear_ratio: float, clock: Clock = time.monotonic
-) -> list[CheckLine]:  # fmt: skip
+def inspected(bus: can.BusABC, rig_file: RigFile, gear_ratio: float, clock: Clock) -> list[CheckLine]:
     """Return a line for each thing that can be looked at on an open bus."""
     network = canopen.Network(bus)
     wanted, found = places(rig_file), _search(network, clock)

@@ -19,9 +19,8 @@ def open_bus(bus: Bus) -> can.BusABC:
         config["bitrate"] = bus.bitrate
     if bus.interface == "socketcand":
         _refuse_unless_listening(config.get("host"), config.get("port"))
-        config.setdefault(
-            "tcp_tune", True
-        )  # else the second small write of a cycle waits for the first's acknowledgement
+        # Without it the second small write of a cycle waits until the first one is acknowledged.
+        config.setdefault("tcp_tune", True)
     try:
         return can.Bus(ignore_config=True, **config)
     except (can.CanError, OSError, ValueError, TypeError, NotImplementedError, ImportError) as error:
