@@ -76,13 +76,18 @@ class Axes:
                 found.append(
                     (HOT if hot else DRIVE_FAULT[axis], f"{NAMES[axis]}: {_error(status)}" if hot else _error(status))
                 )
-                self._wanted[axis] = self._on[axis] = False
+                self._give_up(axis)
             elif self._wanted[axis] and status.state == "enabled":
                 self._on[axis] = True
             elif self._on[axis] and status.state != "unknown":
                 found.append((LEFT_ENABLED, f"{NAMES[axis]}: {status.words}"))
-                self._wanted[axis] = self._on[axis] = False
+                self._give_up(axis)
         return found
+
+    def _give_up(self, axis: Axis) -> None:
+        """Take back the wish to be enabled, so that nothing brings the axis back when its fault is gone."""
+        if self._wanted[axis]:
+            self.disarm(axis)
 
     def _see(self, axis: Axis) -> None:
         self.status[axis] = self._rig.axis(axis)

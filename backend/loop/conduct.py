@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from backend.loop.arming import BLEND_S, ENABLE_S, Situation, reasons
+from backend.loop.arming import BLEND_S
 from backend.loop.connected_rig import ConnectedRig
 from backend.loop.freshness import FAULTS, STOPS, oldest, silence, stop_sentence
 from backend.loop.homing import HomingLaw
@@ -13,50 +13,14 @@ from backend.loop.latch import Latch
 from backend.loop.messages import Changed, Done, Refused, Report, State
 from backend.loop.monitors import Monitors, Seen
 from backend.loop.motion import Motion
+from backend.loop.reactions import LOST, ONLY_DRIVEN, UNHOMES
 from backend.loop.rig_states import CLOSED, DRIVEN, WATCHED
 from backend.loop.stopping import Moment, Release, Stopping
 from backend.loop.watchdogs import Watchdogs
-from backend.rigs.faults import (
-    BUS_OFF,
-    BUS_SILENT,
-    DEFLECTION,
-    ENABLE_TIMEOUT,
-    END_STOP,
-    HOMING,
-    LEAF_TORQUE,
-    MOTOR_DRIVE,
-    MOTOR_JUMP,
-    MOTOR_SILENT,
-    NOT_A_NUMBER,
-    OUTSIDE,
-    STIFFNESS_DRIVE,
-    STIFFNESS_JUMP,
-    STIFFNESS_SILENT,
-    Fault,
-)
-from backend.rigs.rig import AXES, Axis
+from backend.rigs.faults import ENABLE_TIMEOUT, HOMING, NOT_A_NUMBER, Fault
+from backend.rigs.rig import AXES, Axis, RigError
 from vssea_core.channels import INDEX
 from vssea_core.tick import controller as law
-
-LOST: dict[Fault, tuple[Axis, ...]] = {
-    MOTOR_SILENT: ("motor",),
-    MOTOR_DRIVE: ("motor",),
-    MOTOR_JUMP: ("motor",),
-    STIFFNESS_SILENT: ("stiffness",),
-    STIFFNESS_DRIVE: ("stiffness",),
-    STIFFNESS_JUMP: ("stiffness",),
-    BUS_SILENT: AXES,
-    BUS_OFF: AXES,
-}
-"""Faults after which an axis cannot be braked or held by the loop: its drive stops it."""
-UNHOMES = (STIFFNESS_JUMP, END_STOP, HOMING)
-"""Faults after which theta_ms is not known any more."""
-ONLY_DRIVEN = (OUTSIDE, DEFLECTION, LEAF_TORQUE)
-"""Conditions that a rig with its drives off may be in; they keep it from being armed."""
-REST_S = 3.0
-"""Time [s] in which a rig that is disarmed has to come to rest."""
-RESET_S = 1.5
-"""Time [s] in which a drive has to leave its fault."""
 
 
 class Conduct:
@@ -70,126 +34,35 @@ class Conduct:
         tell: Callable[[Report], None],
         epoch: int,
     ) -> None:
-        self.on, self._watchdogs, self._clock, self._tell, self._epoch = on, watchdogs, clock, tell, epoch
+        self.on, self.watchdogs, self.clock, self._tell, self._epoch = on, watchdogs, clock, tell, epoch
         self.state: State = "starting"
         self.latch = Latch()
         self.motion = Motion(on.controller, on.limits)
         self.monitors = Monitors(on.limits, on.actuator, on.period_s)
         self.homing: HomingLaw | None = None
-        self._stopping: Stopping | None = None
-        self._release: Release | None = None
-        self._goal: State = "stopped"
+        self.stopping: Stopping | None = None
+        self.release: Release | None = None
+        self.goal: State = "stopped"
         self._reason: str | None = None
-        self._rest_until: float | None = None
-        self._arming: tuple[int, float] | None = None
-        self._resetting: tuple[int, float] | None = None
-        self._enable_until = self._armed_s = 0.0
+        self.rest_until: float | None = None
+        self.arming: tuple[int, float] | None = None
+        self.resetting: tuple[int, float] | None = None
+        self.enable_until = self._armed_s = 0.0
         self._error = 0.0
         self.become("connected", None)
-
-    # What is asked of it
-
-    def home(self) -> None:
-        """Begin homing. Raises ValueError with the reason why not."""
-        on = self.on
-        reason = self.cannot_home()
-        if reason:
-            raise ValueError(reason)
-        self.homing = on.begin_homing()
-        self._stopping = None
-        self.monitors.restart()
-        self._enable_until = self._clock() + ENABLE_S
-        on.axes.arm("stiffness")
-        self.become("homing", None)
-
-    def cannot_home(self) -> str | None:
-        """Return why homing would be refused now."""
-        on = self.on
-        if self.latch:
-            return "a fault is latched; clear its cause and reset it"
-        if oldest(on.measured) >= STOPS:
-            return "measurements are missing; check the bus"
-        if self._watchdogs.lease_left_s <= 0.0:
-            return "nobody is in control; take control"
-        if self._arming is not None:
-            return "the rig is being armed; wait"
-        if self._stopping is not None and self._stopping.holding:
-            return "the stiffness axis holds a loaded spring; take the load off first"
-        if on.axes.status["stiffness"].state != "disabled":
-            return f"the stiffness drive is not ready ({on.axes.status['stiffness'].words})"
-        return None
-
-    def arm(self, number: int) -> None:
-        """Begin arming; the command `number` is answered when the loops are closed. Raises ValueError with the reasons."""
-        found = self.cannot_arm()
-        if found or self._arming is not None:
-            raise ValueError("; ".join(found) or "the rig is being armed already")
-        self._arming = (number, self._clock() + ENABLE_S)
-        for axis in AXES:
-            self.on.axes.arm(axis)
-
-    def cannot_arm(self) -> tuple[str, ...]:
-        """Return why arming would be refused now."""
-        on = self.on
-        speeds = on.controller.link_velocity, self.monitors.motor_speed, on.controller.stiffness_velocity
-        ends = on.last_stage.theta_ms_stiff, on.last_stage.theta_ms_soft
-        situation = Situation(
-            on.measured, on.homed, speeds if on.homed else (0.0, self.monitors.motor_speed, 0.0), ends, on.tuning_period_s,
-            on.period_s, self._watchdogs.lease_left_s,
-        )  # fmt: skip
-        return reasons(situation, on.limits, on.axes, self.latch)
-
-    def disarm(self) -> None:
-        """Come to rest, then open the loops."""
-        self.motion.hold("disarm")
-        self._goal, self._rest_until = "ready", self._clock() + REST_S
-        self.become("stopping", None)
 
     def stop(self, reason: str) -> None:
         """Take the rig to rest and off, from whatever state; a rig that is off or at fault stays so."""
         if self.state in ("stopped", "fault"):
             return
         self._reason = reason
-        self._goal = "stopped"
+        self.goal = "stopped"
         self._to_safety()
-
-    def reset(self, number: int) -> None:
-        """Take back stop and faults; a drive at fault is asked to leave it, and the answer waits for that."""
-        if self._resetting is not None:
-            raise ValueError("the rig is being reset already")
-        if self.on.axes.at_fault() is not None:
-            self.on.axes.reset_faults()
-            self._resetting = (number, self._clock() + RESET_S)
-            return
-        stands = self._stands()
-        if stands is not None:
-            raise ValueError(stands)
-        self._finish_reset()
-
-    @property
-    def resetting(self) -> bool:
-        """Whether a reset waits for a drive, and its answer with it."""
-        return self._resetting is not None
-
-    @property
-    def words(self) -> str:
-        """What the rig does, in words."""
-        if self.state == "homing" and self.homing is not None:
-            return self.homing.words
-        if self.state in CLOSED or self._rest_until is not None:
-            return self.motion.words
-        if self._arming is not None:
-            return "drives coming into operation"
-        if self._stopping is not None and self._stopping.holding:
-            return "the stiffness axis holds" if not self.on.axes.on("motor") else "braking"
-        return "stopping" if self.on.axes.any_on else "drives off"
-
-    # One cycle
 
     def guard(self, late_in_a_row: bool, late: Fault) -> None:
         """Look whether operator, server and clock are as they have to be."""
-        if self.state in WATCHED or self._arming is not None:
-            silent = self._watchdogs.expired()
+        if self.state in WATCHED or self.arming is not None:
+            silent = self.watchdogs.expired()
             if silent is not None:
                 self.stop(silent.sentence())
         if late_in_a_row and self.state in CLOSED:
@@ -197,7 +70,7 @@ class Conduct:
 
     def cycle(self, row: NDArray[np.float64]) -> None:
         """Exchange, look for faults, and decide the torques of the next exchange; fill `row`."""
-        on, now = self.on, self._clock()
+        on, now = self.on, self.clock()
         found = on.exchange()
         found += on.axes.look()
         silent = silence(on.measured) if oldest(on.measured) >= FAULTS else None
@@ -207,14 +80,14 @@ class Conduct:
         for fault, detail in found:
             if fault not in ONLY_DRIVEN or self.state in DRIVEN or fault in self.latch:
                 self._note(fault, detail)
-        if oldest(on.measured) >= STOPS and (self.state in WATCHED or self._arming is not None):
+        if oldest(on.measured) >= STOPS and (self.state in WATCHED or self.arming is not None):
             self.stop(stop_sentence(on.measured))
         self._go_on_arming(now)
         self._go_on_resetting(now)
         motor_torque, stiffness_torque = self._torques(row, now)
         on.motor_torque, on.stiffness_torque = motor_torque, stiffness_torque
         if not on.controller.finite and on.axes.any_on:
-            if self._stopping is not None:  # not even holding can be computed
+            if self.stopping is not None:  # not even holding can be computed
                 self._leave("stiffness")
             self._note(NOT_A_NUMBER, "")
         self._error = row[INDEX["error"]]
@@ -243,21 +116,21 @@ class Conduct:
         if self.homing is not None:
             on.tick(law.READING, 0.0, row)
             return 0.0, self._home_on(self.homing, now)
-        if self._release is not None:
+        if self.release is not None:
             on.tick(law.READING, 0.0, row)
-            torque = self._release.torque(now)
-            if not on.axes.any_on:
-                self._release = None
+            torque = self.release.torque(now)
+            if self.release.over(now):
+                self.release = None
                 self._end_stop()
             return 0.0, torque
-        if self._rest_until is not None or self.state in CLOSED:
+        if self.rest_until is not None or self.state in CLOSED:
             self.motion.advance(now)
-            if self._rest_until is not None and (not self.motion.moving or now >= self._rest_until):
+            if self.rest_until is not None and (not self.motion.moving or now >= self.rest_until):
                 self._to_safety()
             else:
                 return on.tick(law.CLOSED, min(1.0, (now - self._armed_s) / BLEND_S), row)
-        if self._stopping is not None:
-            return self._stop_on(self._stopping, row, now)
+        if self.stopping is not None:
+            return self._stop_on(self.stopping, row, now)
         on.tick(law.READING, 0.0, row)
         return 0.0, 0.0
 
@@ -266,7 +139,7 @@ class Conduct:
         for axis, age in (("motor", on.measured.motor_age), ("stiffness", on.measured.stiffness_age)):
             if age >= STOPS:
                 self._leave(axis)  # type: ignore[arg-type]
-        if self._arming is not None:
+        if self.arming is not None:
             course_mode, share, brakes, holds = law.STIFFNESS_HOLDS, 0.0, False, on.axes.enabled("stiffness")
         else:
             course = stopping.step(Moment(now, self.monitors.motor_speed, on.controller.spring_torque))
@@ -276,13 +149,13 @@ class Conduct:
         if self.state in ("stopping", "homing") and stopping.over(now):
             self._end_stop()
         if stopping.off:
-            self._stopping = None
+            self.stopping = None
         return share * motor_torque if brakes else 0.0, stiffness_torque if holds else 0.0
 
     def _home_on(self, homing: HomingLaw, now: float) -> float:
         on = self.on
         if not on.axes.enabled("stiffness"):
-            if now >= self._enable_until:
+            if now >= self.enable_until:
                 self._note(ENABLE_TIMEOUT, f"stiffness drive: {on.axes.status['stiffness'].words}")
             return 0.0
         if on.measured.stiffness_age != 0:
@@ -292,19 +165,23 @@ class Conduct:
             self._note(HOMING, homing.failure)
             return on.stiffness_torque
         if homing.phase == "homed":
-            on.take_home(homing.offset, homing.span_found)
+            try:
+                on.take_home(homing.offset, homing.span_found)
+            except RigError as error:
+                self._note(error.fault, error.detail)
+                return on.stiffness_torque
             self.monitors.restart()
-            self.homing, self._goal, self._stopping = None, "ready", Stopping(on.axes, now)
+            self.homing, self.goal, self.stopping = None, "ready", Stopping(on.axes, now)
             return on.stiffness_torque
         return torque
 
     def _go_on_arming(self, now: float) -> None:
         on = self.on
-        if self._arming is None:
+        if self.arming is None:
             return
-        number, until = self._arming
+        number, until = self.arming
         if on.axes.enabled(*AXES) and oldest(on.measured) == 0:
-            self._arming = self._stopping = None
+            self.arming = self.stopping = None
             on.begin()
             self.monitors.restart()
             self._armed_s, self._error = now, 0.0
@@ -316,41 +193,39 @@ class Conduct:
             self._note(ENABLE_TIMEOUT, f"{late[0]} drive: {on.axes.status[late[0]].words}")
 
     def _go_on_resetting(self, now: float) -> None:
-        if self._resetting is None:
+        if self.resetting is None:
             return
-        number, until = self._resetting
-        stands = self._stands()
+        number, until = self.resetting
+        stands = self.stands()
         if stands is None:
-            self._resetting = None
-            self._finish_reset()
+            self.resetting = None
+            self.finish_reset()
             self._tell(Done(number, self.on.controller.time_s))
         elif now >= until:
-            self._resetting = None
+            self.resetting = None
             self._tell(Refused(number, stands))
 
-    def _stands(self) -> str | None:
-        """Return why a reset is refused: in words, what has not gone away."""
+    def stands(self) -> str | None:
+        """Return why a reset would be refused: in words, what has not gone away."""
         drive = self.on.axes.at_fault()
         if drive is not None:
             return f"{drive}; clear its cause"
-        standing = self.latch.standing(self._clock())
-        if standing is not None:
-            return f"the cause still stands: {standing.rstrip('.')}"
-        if oldest(self.on.measured) >= STOPS:
-            return f"the cause still stands: {stop_sentence(self.on.measured).rstrip('.')}"
-        return None
+        standing = self.latch.standing(self.clock())
+        if standing is None and oldest(self.on.measured) >= STOPS:
+            standing = stop_sentence(self.on.measured)
+        return None if standing is None else f"the cause still stands: {standing.rstrip('.')}"
 
-    def _finish_reset(self) -> None:
+    def finish_reset(self) -> None:
+        """Be ready, or connected if the rig has to be homed again, with the drives off and the faults forgotten."""
         if any(fault in self.latch for fault in UNHOMES):
             self.on.homed = False
+            self.on.axes.disarm("stiffness")  # it can hold no place that is not known
         self.latch.clear()
         self.monitors.restart()
         self.become("ready" if self.on.homed else "connected", None)
 
-    # Stops and faults
-
     def _note(self, fault: Fault, detail: str) -> None:
-        now = self._clock()
+        now = self.clock()
         if not self.latch.note(fault, detail, self.on.controller.time_s, now):
             return
         if self.state != "fault":
@@ -360,31 +235,31 @@ class Conduct:
             self._leave(axis)
 
     def _leave(self, axis: Axis) -> None:
-        if self._stopping is not None:
-            self._stopping.leave_to_drive(axis, self._clock())
+        if self.stopping is not None:
+            self.stopping.leave_to_drive(axis, self.clock())
         elif self.on.axes.on(axis):
             self.on.axes.stop(axis)
 
     def _to_safety(self) -> None:
         """Begin the stop that suits the state; what is off already is stopped, or at fault, at once."""
-        on, now = self.on, self._clock()
-        self._rest_until = None
+        on, now = self.on, self.clock()
+        self.rest_until = None
         self.motion.end()
-        if self._arming is not None:
-            number, self._arming = self._arming[0], None
+        if self.arming is not None:
+            number, self.arming = self.arming[0], None
             self._tell(
                 Refused(number, f"the rig was stopped while it was being armed: {(self._reason or '').rstrip('.')}")
             )
-            self._stopping = self._stopping or Stopping(on.axes, now)
+            self.stopping = self.stopping or Stopping(on.axes, now)
             on.axes.disarm("motor")
             if self.state == "ready":
                 self.become("stopping", self._reason)
         elif self.homing is not None:
-            self._release, self.homing = Release(on.axes, on.stiffness_torque, now), None
+            self.release, self.homing = Release(on.axes, on.stiffness_torque, now), None
             self.become("stopping", self._reason)
         elif self.state in DRIVEN:
-            if self._stopping is None and self._release is None:
-                self._stopping = Stopping(on.axes, now)
+            if self.stopping is None and self.release is None:
+                self.stopping = Stopping(on.axes, now)
             if self.state != "stopping":
                 self.become("stopping", self._reason)
         else:
@@ -394,7 +269,7 @@ class Conduct:
         """Become what the stop was for; a fault that latched on the way goes first."""
         if self.latch:
             self.become("fault", self.latch.first)
-        elif self._goal == "ready":
+        elif self.goal == "ready":
             self.become("ready", None)
         else:
             self.become("stopped", self._reason)

@@ -11,8 +11,9 @@ from backend.loop.leaving import leave
 from backend.loop.messages import Command, Done, Refused, State
 from backend.loop.pacer import Pacer
 from backend.loop.pipe_end import PipeEnd
+from backend.loop.rig_commands import apply
 from backend.loop.rig_reports import EVERY_S, rig_report
-from backend.loop.rig_states import refusal
+from backend.loop.rig_states import DRIVEN, refusal
 from backend.loop.stamps import stamp
 from backend.loop.watchdogs import Watchdogs
 from backend.rigs.faults import LOOP_LATE, PROCESS_ENDED, STOP_REQUESTED
@@ -134,44 +135,11 @@ class RigLoop:
             elif isinstance(command, messages.Disconnect):
                 self._ending, self._disconnect = True, number
                 return None
-            elif self._conduct is not None and not self._apply(self._conduct, number, command):
+            elif self._conduct is not None and not apply(self._conduct, number, command):
                 return None
-        except ValueError as refusal_of_it:
-            return Refused(number, str(refusal_of_it))
+        except (ValueError, RigError) as refusal_of_it:
+            return Refused(number, str(refusal_of_it).rstrip("."))
         return Done(number, self._conduct.on.controller.time_s if self._conduct else 0.0)
-
-    def _apply(self, conduct: Conduct, number: int, command: Command) -> bool:
-        """Apply a command; return whether it can be answered at once."""
-        motion, on, now = conduct.motion, conduct.on, self._clock()
-        match command:
-            case messages.Home():
-                conduct.home()
-            case messages.Arm():
-                conduct.arm(number)
-                return False
-            case messages.Disarm():
-                conduct.disarm()
-            case messages.Reset():
-                conduct.reset(number)
-                return not conduct.resetting
-            case messages.Follow():
-                motion.follow()
-            case messages.Hold():
-                motion.hold()
-            case messages.Jog(link, stiffness, sent_s):
-                motion.jog(link, stiffness, sent_s, now)
-            case messages.GoTo(position, speed):
-                motion.go_to(position, speed)
-            case messages.SetReference(reference):
-                motion.set_reference(reference)
-            case messages.SetStiffness(stiffness_reference):
-                motion.set_stiffness(stiffness_reference)
-            case messages.SetDisturbances(disturbances):
-                on.controller.set_disturbances(disturbances)
-            case messages.Install(tuning, prepared, tuning_id):
-                on.install(tuning, prepared, tuning_id)
-        conduct.match_motion()
-        return True
 
     def _connect(self, command: messages.Connect) -> None:
         rig = self._rig_of(command.rig, command.scenario)
@@ -205,7 +173,7 @@ class RigLoop:
             return
         conduct.stop(PROCESS_ENDED.sentence())
         until = self._clock() + LEAVE_S
-        while conduct.on.axes.any_on and self._clock() < until:
+        while (conduct.state in DRIVEN or conduct.on.axes.any_on) and self._clock() < until:
             self._cycle(conduct, 0.0)
             self._report_when_due(conduct)
             self._pipe.send()

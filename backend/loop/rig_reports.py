@@ -2,6 +2,8 @@
 
 from backend.loop.conduct import Conduct
 from backend.loop.messages import AxisReport, RigReport
+from backend.loop.rig_commands import cannot_arm
+from backend.loop.rig_states import CLOSED
 from backend.rigs.rig import AXES, Axis, BusHealth, RigError
 
 EVERY_S = 0.1
@@ -18,8 +20,8 @@ def rig_report(conduct: Conduct, now: float, missed_cycles: int, lease_left_s: f
         kind=on.identity.kind,
         homed=on.homed,
         span_found=on.span_found,
-        motion=conduct.words,
-        cannot_arm=conduct.cannot_arm(),
+        motion=words(conduct),
+        cannot_arm=cannot_arm(conduct),
         axes=tuple(_axis_report(conduct, axis) for axis in AXES),
         link_age=on.measured.link_age,
         faults=conduct.latch.reports(now),
@@ -30,6 +32,20 @@ def rig_report(conduct: Conduct, now: float, missed_cycles: int, lease_left_s: f
         lease_left_s=lease_left_s,
         identity=on.identity,
     )
+
+
+def words(conduct: Conduct) -> str:
+    """Return what the rig does, in words."""
+    axes = conduct.on.axes
+    if conduct.homing is not None:
+        return conduct.homing.words
+    if conduct.state in CLOSED or conduct.rest_until is not None:
+        return conduct.motion.words
+    if conduct.arming is not None:
+        return "drives coming into operation"
+    if conduct.stopping is not None and conduct.stopping.holding:
+        return "braking" if axes.on("motor") else "the stiffness axis holds"
+    return "stopping" if axes.any_on else "drives off"
 
 
 def _axis_report(conduct: Conduct, axis: Axis) -> AxisReport:

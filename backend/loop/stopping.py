@@ -18,6 +18,9 @@ QUICK_STOP_S = 0.5
 HOLDS_ON_S = 1.0
 """A stop is over this long after the motor is off even if the stiffness axis goes on holding."""
 
+LONGEST_S = 2.5
+"""A stop is over after this time whatever the drives say: they have been told to be off."""
+
 
 class Moment(NamedTuple):
     """What a stop looks at in one cycle."""
@@ -108,7 +111,9 @@ class Stopping:
 
     def over(self, now: float) -> bool:
         """Return whether the stop is over: both axes off, or the motor off and the spring loaded for good."""
-        return self.off or (self._motor_off_s is not None and now - self._motor_off_s >= HOLDS_ON_S)
+        if self.off or now - self._began >= LONGEST_S:
+            return True
+        return self._motor_off_s is not None and now - self._motor_off_s >= HOLDS_ON_S
 
 
 class Release:
@@ -116,12 +121,18 @@ class Release:
 
     def __init__(self, axes: Axes, torque: float, now: float) -> None:
         self._axes, self._torque, self._began = axes, torque, now
+        self._told = False
         if not axes.enabled("stiffness"):
             axes.disarm("stiffness")
 
     def torque(self, now: float) -> float:
         """Return the torque [N m] of this cycle."""
         share = max(0.0, 1.0 - (now - self._began) / RAMP_S)
-        if share == 0.0 and self._axes.on("stiffness"):
+        if share == 0.0 and not self._told:
+            self._told = True
             self._axes.disarm("stiffness")
         return self._torque * share if self._axes.enabled("stiffness") else 0.0
+
+    def over(self, now: float) -> bool:
+        """Return whether the axis is off, or was told so long ago."""
+        return self._told and (not self._axes.any_on or now - self._began >= HOLDS_ON_S)

@@ -53,6 +53,7 @@ class AnySequence(RuleBasedStateMachine):
     @initialize(how=st.sampled_from(["connected", "ready", "armed", "running"]))
     def begin(self, how: str) -> None:
         self.bench.connect()
+        self.state = self.bench.state
         if how != "connected":
             self.ask(messages.Home())
             while self.state == "homing":
@@ -93,7 +94,7 @@ class AnySequence(RuleBasedStateMachine):
         before, self.state = self.state, bench.state
         for order, axis in bench.rig.orders:
             if order == "arm":
-                assert self.state in ("ready", "homing"), f"{axis} armed in {self.state}"
+                assert before in ("connected", "ready", "homing"), f"{axis} armed in {before}"
                 self.may_be_on[axis] = True
         motor, stiffness = bench.rig.asked[-1]
         assert math.isfinite(motor)

@@ -7,6 +7,7 @@ import pytest
 
 from backend.loop import messages
 from backend.loop.messages import Done, State
+from backend.loop.rig_commands import cannot_arm
 from backend.loop.rig_states import ALLOWED, SIMULATION_ONLY, refusal
 from backend.rigs.faults import LINK_ENCODER, NO_BUS
 from backend.rigs.rig import RigError
@@ -160,7 +161,7 @@ def test_arming_is_refused_in_words(bench: RigBench, name: str, make: Callable[[
     bench.turn() if name != "nobody" else None
     conduct = bench.loop._conduct
     assert conduct is not None
-    assert any(reason in clause for clause in conduct.cannot_arm()), conduct.cannot_arm()
+    assert any(reason in clause for clause in cannot_arm(conduct)), cannot_arm(conduct)
     bench.rig.orders.clear()
     if name == "stale":
         bench.rig.missed.update(link=2)

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from backend.loop import arming, conduct, freshness, latch, motion, rig_loop, stopping, watchdogs
+from backend.loop import arming, freshness, latch, motion, reactions, rig_commands, rig_loop, stopping, watchdogs
 from backend.rigs.faults import FAULTS
 
 TEXT = (Path(__file__).parents[2] / "docs" / "faults.md").read_text("utf-8")
@@ -26,13 +26,13 @@ def test_numbers_rise_and_names_differ() -> None:
 def test_what_is_said_to_unhome_or_to_last_until_reconnected_does() -> None:
     rows = {int(line.split("|")[1]): line for line in TEXT.splitlines() if re.match(r"\| \d+ \|", line)}
     assert {n for n, row in rows.items() if "not homed afterwards" in row} == {
-        fault.number for fault in conduct.UNHOMES
+        fault.number for fault in reactions.UNHOMES
     }
     until = {
         n for n, row in rows.items() if "until the rig is connected again" in row or "Refuses the connection" in row
     }
     assert until == latch.UNTIL_RECONNECTED
-    quick = {fault.number: set(axes) for fault, axes in conduct.LOST.items()}
+    quick = {fault.number: set(axes) for fault, axes in reactions.LOST.items()}
     told = {n: row for n, row in rows.items() if "quick stop" in row}
     assert set(told) == set(quick)
     assert {n for n, row in told.items() if "both axes" in row} == {n for n, axes in quick.items() if len(axes) == 2}
@@ -42,7 +42,7 @@ def test_the_figures_of_the_stop_are_those_of_the_code() -> None:
     figures = (
         (stopping.SLOW_RAD_S, 0.02), (stopping.SLOW_S, 0.02), (stopping.BRAKES_S, 0.6), (stopping.RAMP_S, 0.05),
         (stopping.UNLOADED_NM, 1.0), (stopping.UNLOADED_S, 0.1), (stopping.HOLDS_ON_S, 1.0), (latch.GONE_AFTER_S, 0.3),
-        (watchdogs.LEASE_S, 0.4), (watchdogs.WEB_S, 0.25), (motion.JOG_LASTS_S, 0.3), (conduct.RESET_S, 1.5),
+        (watchdogs.LEASE_S, 0.4), (watchdogs.WEB_S, 0.25), (motion.JOG_LASTS_S, 0.3), (rig_commands.RESET_S, 1.5),
         (freshness.BRIDGED, 1), (freshness.STOPS, 3), (freshness.FAULTS, 10), (rig_loop.LATE_CYCLES, 10),
         (arming.BLEND_S, 0.1),
     )  # fmt: skip

@@ -32,7 +32,7 @@ from backend.rigs.faults import (
     TORQUE_NOT_GIVEN,
     Fault,
 )  # fmt: skip
-from backend.rigs.rig import AXES, Axis, RigError
+from backend.rigs.rig import AXES, Axis, AxisStatus, RigError
 from tests.hardware.rig_loop_bench import SCENARIO, RigBench, T, prepared
 from vssea_core.actuator.parameters import Actuator, StiffnessMechanism
 from vssea_core.signals.documents import ConstantDisturbance, Disturbances, SineReference
@@ -327,3 +327,32 @@ def test_a_fault_is_reported_in_its_own_turn(bench: RigBench) -> None:
     kinds = [type(report) for report in bench.pipe.outbox]
     assert messages.Changed in kinds
     assert bench.faults() == [LINK_JUMP.number]
+
+
+def test_a_drive_that_recovers_by_itself_is_not_brought_back(bench: RigBench) -> None:
+    """The rig is told to leave the axis off, whatever the drive does later."""
+    bench.armed()
+    bench.rig.orders.clear()
+    bench.rig.fault_drive("stiffness")
+    bench.turn()
+    assert ("disarm", "stiffness") in bench.rig.orders
+    bench.stop()
+    bench.rig.fault_drive("motor")
+    bench.turn()
+    assert ("disarm", "motor") in bench.rig.orders
+    bench.rig.mend()
+    for axis in AXES:
+        bench.rig.reset(axis)
+    bench.pass_s(2.0)
+    assert bench.state == "fault"
+    assert bench.enabled() == []
+
+
+def test_a_drive_that_never_says_it_is_off_does_not_keep_the_rig_stopping(
+    bench: RigBench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench.armed()
+    monkeypatch.setattr(bench.rig, "axis", lambda axis: AxisStatus(axis, "enabled", "operation enabled"))
+    bench.stop()
+    assert bench.until("stopped", most_s=3.0) <= 2.6
+    assert bench.rig.asked[-1][0] == 0.0

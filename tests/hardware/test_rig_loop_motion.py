@@ -242,3 +242,19 @@ def test_every_change_of_what_is_held_is_told(bench: RigBench) -> None:
     assert moved(bench)[-1] == ("reference", "go to")
     last = [report for report in bench.pipe.outbox if isinstance(report, Moved)][-1]
     assert last.scenario.reference.kind == "jog"
+
+
+def test_limits_act_last_whatever_tuning_and_reference_ask(bench: RigBench) -> None:
+    stiff = bench.scenario.tuning.model_copy(update={"controller": StateFeedback(natural_frequency=40.0)})
+    bench.do(messages.Install(stiff, prepared(stiff), 2))
+    bench.do(messages.SetReference(StepReference(origin=0.0, target=1.5, start_s=0.0)))
+    first = len(bench.rig.asked)
+    bench.follow()
+    bench.pass_s(1.0)
+    asked = np.array(bench.rig.asked[first:])[:, 0]
+    limits = np.bitwise_or.reduce(bench.channel("limits")[-500:].astype(int))
+    assert np.abs(asked).max() <= 70.0
+    grown = np.abs(asked[1:]) - np.abs(asked[:-1])
+    assert grown.max() <= 20000.0 * T + 1e-9
+    assert limits & (256 | 512 | 1024 | 2048 | 4096)
+    assert bench.rig.plant.theta_l < 1.65
