@@ -145,9 +145,9 @@ class RigLoop:
         rig = self._rig_of(command.rig, command.scenario)
         try:
             rig.connect()
-            identity = rig.identify()
+            rig.identify()  # another device is not configured
             rig.configure()
-            on = ConnectedRig(rig, identity, command)
+            on = ConnectedRig(rig, rig.identify(), command)  # now with what the devices would not take over
         except RigError as error:
             rig.close()
             raise ValueError(str(error).rstrip(".")) from error

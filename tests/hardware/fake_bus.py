@@ -180,7 +180,7 @@ class FakeDrive(FakeNode):
         sizes = {
             (0x603F, 0): 2, (0x6040, 0): 2, (0x6007, 0): 2, (0x605A, 0): 2, (0x605E, 0): 2, (0x6060, 0): 1, (0x6061, 0): 1,
             (0x6064, 0): 4, (0x6071, 0): 2, (0x6072, 0): 2, (0x6077, 0): 2, (0x6085, 0): 4, (0x60C2, 1): 1, (0x60C2, 2): 1,
-            (0x1016, 1): 4, (0x60E4, 2): 4,
+            (0x1016, 1): 4, (0x1029, 1): 1, (0x60E4, 2): 4,
         }  # fmt: skip
         super().__init__(bus, number, {
             **_identity(0x00020192, name, 1000 + number), **_pdos(), **{key: bytes(size) for key, size in sizes.items()},

@@ -45,7 +45,8 @@ def test_each_axis_is_told_what_to_do_when_this_computer_is_gone() -> None:
         assert drive.value(0x605E) == 2
         assert drive.value(0x1016, 1, "<I") == 127 << 16 | 100
         assert drive.value(0x1017, 0, "<H") == 100
-        assert drive.value(0x1400, 5, "<H") == 30
+        assert drive.value(0x1400, 5, "<H") == 50
+        assert drive.value(0x1029, 1, "<B") == 1, "it stays in the cycle, so that one sees how it stands"
         assert drive.value(0x6060, 0, "<b") == 10
         assert drive.value(0x6071) == 0
         assert (drive.value(0x60C2, 1, "<B"), drive.value(0x60C2, 2, "<b")) == (2, -3)

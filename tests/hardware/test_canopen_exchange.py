@@ -61,10 +61,10 @@ def test_a_negative_sign_turns_the_torque_too() -> None:
     assert measured.motor_torque == measured.motor_torque_seen == pytest.approx(10.0, abs=MOTOR_UNIT)
 
 
-def test_our_heartbeat_goes_out_four_times_in_the_time_that_drives_wait() -> None:
+def test_our_heartbeat_goes_out_eight_times_in_the_time_that_drives_wait() -> None:
     fake = FakeRig().ready()
     fake.turn(cycles=500)
-    assert len(fake.bus.sent_to(0x77F)) == pytest.approx(40, abs=2)
+    assert len(fake.bus.sent_to(0x77F)) == pytest.approx(83, abs=2)
     assert set(fake.bus.sent_to(0x77F)) == {b"\5"}
 
 

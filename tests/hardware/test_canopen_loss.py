@@ -3,6 +3,8 @@
 import math
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from backend.rigs.canopen.answer import NEVER
 from tests.hardware.fake_bus import ANSWER_DELAY_S
@@ -75,6 +77,64 @@ def test_answers_that_are_always_more_than_a_cycle_late_are_found_out_and_never_
     fake.link.delay_s = lambda place: ANSWER_DELAY_S
     fake.turn(cycles=6)
     assert fake.turn().link_age == 0
+    fake.link.delay_s = lambda place: None
+    fake.turn()
+    fake.link.delay_s = lambda place: ANSWER_DELAY_S
+    assert fake.turn().link_age == 0, "trusted again"
+
+
+def test_a_late_answer_that_is_lost_on_the_way_is_not_waited_for_for_ever() -> None:
+    fake = FakeRig().ready()
+    for _ in range(3):
+        fake.turn(cycles=10)
+        fake.link.delay_s = lambda place: 2.1e-3
+        while fake.turn().link_age < 3:
+            pass
+        fake.link.delay_s = lambda place: None
+        fake.turn(cycles=3)
+        fake.link.delay_s = lambda place: 2.1e-3
+        fake.turn(cycles=3)
+        fake.link.delay_s = lambda place: ANSWER_DELAY_S
+        fake.turn(cycles=20)
+        assert fake.turn().link_age == 0
+
+
+@given(st.floats(1.25e-3, 20e-3))
+def test_whatever_the_delay_beyond_the_deadline_nothing_is_fresh_after_some_cycles(delay_s: float) -> None:
+    fake = FakeRig().ready()
+    fake.turn(cycles=10)
+    fake.link.delay_s = lambda place: delay_s
+    fake.turn(cycles=60)
+    assert all(fake.turn().link_age > 0 for _ in range(40))
+    assert fake.rig.health().late_answers > 0
+    fake.link.delay_s = lambda place: ANSWER_DELAY_S
+    fake.turn(cycles=40)
+    assert all(fake.turn().link_age == 0 for _ in range(10))
+
+
+@given(st.lists(st.sampled_from([None, 1e-4, 1.1e-3, 1.5e-3, 1.9e-3]), min_size=1, max_size=60))
+def test_what_is_called_fresh_was_measured_in_this_cycle(delays: list[float | None]) -> None:
+    fake = FakeRig().ready()
+    for delay in delays:  # lost, early, just in time, or late by less than a cycle
+        fake.link.delay_s = lambda place, delay=delay: delay
+        fake.link.position += 10
+        measured = fake.turn()
+        if measured.link_age == 0:
+            assert measured.link_position == pytest.approx(fake.link.position * math.tau / 131072)
+
+
+def test_a_stalled_node_that_makes_up_for_its_answers_at_once_is_fresh_with_the_last() -> None:
+    fake = FakeRig().ready()
+    fake.turn(cycles=10)
+    for missing in range(10, 0, -1):
+        fake.link.position += 10
+        fake.link.delay_s = lambda place, delay=missing * fake.rig.period_s + 2e-4: delay
+        fake.turn()
+    fake.link.delay_s = lambda place: 3e-4
+    fake.link.position += 10
+    measured = fake.turn()
+    assert measured.link_age == 0
+    assert measured.link_position == pytest.approx(fake.link.position * math.tau / 131072)
 
 
 @pytest.mark.parametrize("slow_s", [ANSWER_DELAY_S, 1.1e-3])

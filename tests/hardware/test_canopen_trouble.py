@@ -68,6 +68,13 @@ def test_over_temperature_is_told_apart_and_a_short_emergency_harms_nothing() ->
     assert faults(fake) == [CORRUPTED]
 
 
+def test_what_nodes_said_before_they_were_configured_is_no_fault_of_this_session() -> None:
+    fake = FakeRig()
+    fake.motor.emergency(0x8130)
+    fake.stiffness.boot()
+    assert faults(fake.ready()) == []
+
+
 def test_a_node_that_starts_anew_has_lost_its_configuration() -> None:
     fake = FakeRig().ready()
     assert faults(fake) == []

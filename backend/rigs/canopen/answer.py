@@ -6,9 +6,11 @@ from typing import Any
 
 NEVER = 1_000_000
 """Age [cycles] of what has not come yet."""
-MOST_OWED = 4
+MOST_OWED = 1000
 PROBED_AFTER = 3
 """Cycles from a doubt to the cycle without SYNC that settles it."""
+QUIET_CYCLES = 5
+"""Cycles without SYNC and without an answer after which what is still owed was lost."""
 
 
 class Answer:
@@ -16,22 +18,32 @@ class Answer:
 
     After a cycle without an answer two may come: the first is the late one. Where only one comes, nothing in it says whether
     the other was lost or it is itself a cycle late. It is taken for this cycle's, and a cycle without SYNC is asked for: what
-    comes in that one was late, and from then on nothing is taken until an answer comes within its own cycle.
+    comes in that one was late. Then SYNC stays away until all that is owed has come, and nothing is taken until an answer
+    comes within its own cycle.
     """
 
-    __slots__ = ("_came", "_probed_in", "_size", "_sound", "_unpack", "age", "can_id", "content", "is_late", "owed")
+    __slots__ = (
+        "_came", "_lost", "_owed", "_probed_in", "_quiet", "_size", "_sound", "_unpack", "age", "can_id",
+        "content", "is_late",
+    )  # fmt: skip
 
     def __init__(self, can_id: int, form: str, sound: Callable[[tuple[int, ...]], bool] | None = None) -> None:
         layout = struct.Struct(form)
         self.can_id = can_id
         self.content: tuple[Any, ...] | None = None
         self.age = NEVER
-        self.owed = 0
         self.is_late = False
         """Whether answers were found to come in later cycles than their own."""
         self._unpack, self._size, self._sound = layout.unpack, layout.size, sound
-        self._came = 0
-        self._probed_in = 0
+        self._owed = 0  # asked for and not come
+        self._lost = 0  # of these, taken for lost
+        self._came = 0  # in this cycle
+        self._probed_in = self._quiet = 0
+
+    @property
+    def is_expected(self) -> bool:
+        """Whether another frame may come."""
+        return self._owed > self._lost
 
     @property
     def wants_probe(self) -> bool:
@@ -48,13 +60,14 @@ class Answer:
         self._came = 0
         if self._probed_in > 1:
             self._probed_in -= 1
-        if asked and self.owed < MOST_OWED:
-            self.owed += 1
+        if asked and self._owed < MOST_OWED:
+            self._owed += 1
 
     def take(self, data: bytearray) -> bool:
         """Take a frame over; return False where its length or content is impossible."""
-        if self.owed:
-            self.owed -= 1
+        if self._owed:
+            self._owed -= 1
+            self._lost = min(self._lost, self._owed)
         if len(data) != self._size:
             return False
         content = self._unpack(data)
@@ -65,22 +78,24 @@ class Answer:
         return True
 
     def probe(self) -> bool:
-        """Close a cycle without SYNC: return whether a late answer came; none is on its way any more."""
-        self.is_late = self.is_late or self._came > 0
-        self.owed = self._probed_in = 0
+        """Close a cycle without SYNC: return whether a late answer came."""
+        came = self._came > 0
         self.age += 1
-        return self._came > 0
+        self.is_late = self.is_late or came
+        self._quiet = 0 if came else self._quiet + 1
+        is_over = not self._owed or not self.is_late or self._quiet >= QUIET_CYCLES
+        if is_over:
+            self._owed = self._lost = self._quiet = 0
+        self._probed_in = 0 if is_over else 1
+        return came
 
-    def settle(self) -> bool:
-        """Close a cycle with SYNC: return whether the content is this cycle's."""
-        if self._came:
-            if not self.owed:
-                self.age, self.is_late = 0, False
-                return True
+    def settle(self) -> None:
+        """Close a cycle with SYNC: the content is this cycle's where the age is 0 then."""
+        self.age += 1
+        if self._came and not self.is_expected:
+            self.age, self.is_late = 0, False
+        elif self._came:
             if not self._probed_in:
                 self._probed_in = PROBED_AFTER
             if not self.is_late:
-                self.owed = self.age = 0
-                return True
-        self.age += 1
-        return False
+                self._lost, self.age = self._owed, 0

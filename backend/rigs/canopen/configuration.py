@@ -16,7 +16,7 @@ from backend.rigs.rig_file import Drive
 
 HEARTBEAT_MS = 100
 """A drive stops when this computer's heartbeat has stayed away for so long; nodes send their own as often."""
-DEADLINE_CYCLES, SHORTEST_DEADLINE_MS = 15, 30
+DEADLINE_CYCLES, SHORTEST_DEADLINE_MS = 15, 50
 """A drive stops when no torque has come for so long; above the 10 cycles after which the loop itself gives up."""
 _NO_RTR, _INVALID = 1 << 30, 1 << 31
 
@@ -65,6 +65,8 @@ def drive_settings(axis: Axis, drive: Drive, period_s: float, torque_limit: int)
         Setting(
             objects.CONSUMER_HEARTBEAT, 1, "<I", OWN_NODE << 16 | HEARTBEAT_MS, "safety", "watch on this computer",
         ),
+        # Else a drive that has missed this computer would leave the cycle, and nobody could see how it stands.
+        Setting(objects.ERROR_BEHAVIOUR, 1, "<B", 1, "optional", "stay in the cycle after errors"),
         heartbeat(),
     ]  # fmt: skip
     if drive.quick_stop_deceleration is not None:

@@ -61,6 +61,7 @@ class Cycle:
         self._reason = ""
         self._was_late = False
         self._asked_s = 0.0
+        self._probing = False
         self.cycles = self.late = 0
         self.round_trip_s = 0.0
 
@@ -69,7 +70,7 @@ class Cycle:
         began = self._clock()
         self._was_late = False
         self._drain()
-        probing = self._wants_probe()
+        probing = self._probing = self._wants_probe()
         sent = self._send(with_sync=not probing)
         self._asked_s = self._clock()
         asked = sent and not probing
@@ -111,7 +112,7 @@ class Cycle:
         """Return whether to leave SYNC out this time; not on top of a missed cycle, unless that is what ails."""
         if not any(answer.wants_probe for answer in self._answers):
             return False
-        return all(answer.age == 0 or answer.is_late for answer in self._answers)
+        return self._probing or all(answer.age == 0 or answer.is_late for answer in self._answers)
 
     def _settle(self, probing: bool) -> None:
         was_late = self._was_late
@@ -148,7 +149,7 @@ class Cycle:
                 if left <= 0.0:
                     return
                 continue
-            if self._handle(message) and asked and not any(answer.owed for answer in self._answers):
+            if self._handle(message) and asked and not any(answer.is_expected for answer in self._answers):
                 self.round_trip_s = self._clock() - self._asked_s
                 return
 

@@ -22,7 +22,7 @@ from backend.rigs.faults import BUS_OFF, CORRUPTED, REBOOTED, WRONG_DEVICE, Faul
 from backend.rigs.rig import AXES, Axis, AxisStatus, BusHealth, Identity, Measured, RigError, RigKind
 from backend.rigs.rig_file import Bus, RigFile
 
-HEARTBEATS_A_LIMIT = 4
+HEARTBEATS_A_LIMIT = 8
 """Heartbeats of ours in the time within which a drive must have one."""
 CLOSING_CYCLES = 5
 log = logging.getLogger(__name__)
