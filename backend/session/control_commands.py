@@ -80,6 +80,11 @@ class ControlCommands:
             self._lease.take(party)
         self.heart.beat_operator()
 
+    async def end(self) -> None:
+        """End control and signs of life with the rig's connection."""
+        self._lease.end()
+        await self.heart.end()
+
     # ---- commands
 
     async def take(self, asked: TakingControl, by: str, key: str | None) -> Message:

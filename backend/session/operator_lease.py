@@ -96,6 +96,11 @@ class OperatorLease:
             self._holder = None
         return held
 
+    def end(self) -> None:
+        """Let nobody hold it or ask for it: there is nothing to be in control of."""
+        self._holder = None
+        self._asking.clear()
+
     def expired(self) -> Party | None:
         """Return who has lost it by silence since the last call, None if nobody has."""
         if self._holder is None or self.left_s is not None:

@@ -87,7 +87,7 @@ class RigConnection:
         if session.rig.file is not None:
             session.rig.state.leaving = True
             await session.link.stop(messages.Disconnect())
-            await session.rig.control.heart.end()
+            await session.rig.control.end()
 
     async def _connect(self, name: str, by: str, key: str | None) -> Message:
         session = self._session

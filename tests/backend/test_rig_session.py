@@ -112,6 +112,7 @@ def test_a_refused_rig_leaves_the_simulation_with_the_sentence(data_dir: Path) -
         assert bench.session.scenario == before
         assert bench.switching.started == [RIG_ENTRY, "simulation"]
         assert bench.switching.simulation is not None
+        assert snapshot["control"]["operator"] is None
         await bench.ask("pause")  # a simulation as any
         assert bench.snapshot()["state"] == "paused"
         problem = await refused(bench, "connect_rig", rig="nobody")
@@ -134,6 +135,7 @@ def test_disconnecting_brings_back_what_ran_and_history_begins_anew_both_ways(da
         assert [type(said) for said in bench.switching.farewells] == [messages.Disconnect]
         assert bench.session.scenario == before
         assert bench.snapshot()["state"] == "running"
+        assert bench.snapshot()["control"] == {"needed": False, "operator": None, "asking": [], "expires_in_s": None}
         assert bench.session.status.epoch > epoch + 1  # the rig's run, then one of the simulation
         assert (await refused(bench, "undo")).title == "Nothing to undo"
         assert bench.diary.of(Run)[-1].rig == "simulated"
