@@ -22,7 +22,7 @@ from vssea_core.signals.documents import (
 from vssea_core.simulation.metrics import limit_shares
 from vssea_core.simulation.run import simulate
 from vssea_core.simulation.state import drive_numbers
-from vssea_core.tick import limits
+from vssea_core.tick import bounds
 
 T = 1e-3
 DRIVES = drive_numbers(Actuator(), T)
@@ -116,7 +116,7 @@ PROVOKED: dict[str, dict[str, object]] = {
 }
 
 
-@pytest.mark.parametrize("limit", [limit.name for limit in LIMITS if limit.bit < limits.RIG_TORQUE])
+@pytest.mark.parametrize("limit", [limit.name for limit in LIMITS if limit.bit < bounds.RIG_TORQUE])
 def test_every_limit_is_reported_when_it_acts_and_not_in_a_calm_run(limit: str) -> None:
     assert limit not in shares()
     assert shares(**PROVOKED[limit])[limit] > 0.0
@@ -126,8 +126,8 @@ def test_each_limits_bit_is_the_one_the_kernel_sets() -> None:
     bits = {limit.name: limit.bit for limit in LIMITS}
     assert list(bits.values()) == [
         drive.PEAK, drive.CONTINUOUS, drive.SPEED, drive.STIFFNESS_TORQUE, drive.STIFFNESS_SPEED, drive.LEAF_TORQUE,
-        drive.STIFFNESS_RATE, drive.END_STOP, limits.RIG_TORQUE, limits.RIG_RATE, limits.RIG_SPEED, limits.RIG_POSITION,
-        limits.RIG_DEFLECTION, limits.RIG_STIFFNESS, limits.BLENDED,
+        drive.STIFFNESS_RATE, drive.END_STOP, bounds.RIG_TORQUE, bounds.RIG_RATE, bounds.RIG_SPEED, bounds.RIG_POSITION,
+        bounds.RIG_DEFLECTION, bounds.RIG_STIFFNESS, bounds.BLENDED,
     ]  # fmt: skip
 
 

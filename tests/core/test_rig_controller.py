@@ -65,6 +65,28 @@ def test_arming_holds_the_measured_stiffness_within_the_range_of_the_rig() -> No
     assert np.abs(states[:, SPEED_MS]).max() < 60.0, "it gets there by its slewed reference, not by a step"
 
 
+def test_a_beginning_forgets_the_references_and_estimates_before_it() -> None:
+    bench = RigBench(rig_scenario())
+    bench.arm()
+    bench.controller.set_reference(SineReference(amplitude=0.5, frequency_hz=0.5, fade_in_s=0.0))
+    bench.run(200, CLOSED)
+    bench.controller.set_reference(MoveReference(target=0.4))  # leaves a transition to be worked off
+    bench.run(10, CLOSED)
+    for axis in ("motor", "stiffness"):
+        bench.rig.disarm(axis)
+    bench.rig.jump_encoder("link", 0.5)
+    bench.rig.jump_encoder("motor", 0.5)
+    bench.sent = (0.0, 0.0)
+    bench.run(2, READING)
+    y = bench.measured
+    bench.controller.begin(y.link_position, y.motor_position, y.stiffness_position)
+    assert bench.controller.reference_now() == (y.link_position, 0.0, 0.0, 0.0, 0.0)
+    rows, _ = bench.run(1, READING)
+    assert column(rows, "link_velocity")[0] == 0.0
+    assert column(rows, "link_disturbance_rate")[0] == 0.0
+    assert column(rows, "link_disturbance_estimate")[0] == pytest.approx(column(rows, "spring_torque")[0], rel=1e-9)
+
+
 def test_time_goes_on_over_a_beginning() -> None:
     bench = RigBench(rig_scenario())
     bench.arm()

@@ -27,8 +27,7 @@ from vssea_core.signals.documents import (
     StiffnessReference,
 )
 from vssea_core.simulation.state import DRIVES_SIZE, drive_numbers
-from vssea_core.tick.controller import CLOSED, RigLimits
-from vssea_core.tick.limits import (
+from vssea_core.tick.bounds import (
     BLENDED,
     BOUNDS_SIZE,
     RIG_RATE,
@@ -36,12 +35,10 @@ from vssea_core.tick.limits import (
     RIG_TORQUE,
     STIFFNESS_SLACK,
     Bounds,
-    Motion,
     bounds_row,
-    limit_brake,
-    limit_motor,
-    limit_stiffness,
 )
+from vssea_core.tick.controller import CLOSED, RigLimits
+from vssea_core.tick.limits import Motion, limit_brake, limit_motor, limit_stiffness
 
 PERIOD = 2e-3
 SPEED_E, SPEED_MS = 3, 5

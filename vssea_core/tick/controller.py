@@ -22,6 +22,7 @@ from vssea_core.signals.documents import (
 from vssea_core.signals.references import change_reference, reference_row
 from vssea_core.signals.stiffness import SLEWED_SIZE, Slew, slew_row
 from vssea_core.simulation.state import drive_numbers
+from vssea_core.tick.bounds import RigLimits, bounds_row
 from vssea_core.tick.hardware import (
     BRAKING,
     CLIPPED_AT,
@@ -31,16 +32,14 @@ from vssea_core.tick.hardware import (
     PLACES_AT,
     READING,
     SAG_AT,
-    SEEN_AT,
     SLEWED_AT,
-    SPEEDS_AT,
     STATE_SIZE,
     STIFFNESS_HOLDS,
     TRANSITION_AT,
     target_in_force,
     tick,
 )
-from vssea_core.tick.limits import RigLimits, bounds_row
+from vssea_core.tick.monitored import Monitored
 
 __all__ = ["BRAKING", "CLOSED", "READING", "STIFFNESS_HOLDS", "Controller", "RigLimits"]
 
@@ -51,7 +50,7 @@ _SLEW_SET, _SLEW_SPEED = Slew._fields.index("set_at_s"), Slew._fields.index("spe
 _SLEW_BANDWIDTH = Slew._fields.index("bandwidth")
 
 
-class Controller:
+class Controller(Monitored):
     """The controller of `scenario` on a rig with `limits`; until `begin` it follows the scenario from t = 0.
 
     Raises ValueError if the tuning's observer needs velocity signals, which no rig has.
@@ -84,61 +83,6 @@ class Controller:
     def time_s(self) -> float:
         """Time of the next tick."""
         return self._sample * self._period
-
-    @property
-    def finite(self) -> bool:
-        """Whether all that the last tick computed were numbers; if not, the torque concerned is zero."""
-        return bool(self._state[FINITE_AT])
-
-    @property
-    def link_velocity(self) -> float:
-        """Filtered difference of the link encoder [rad/s], without any model."""
-        return float(self._state[SPEEDS_AT])
-
-    @property
-    def motor_velocity(self) -> float:
-        """Filtered difference of the motor encoder [rad/s, gear side], without any model."""
-        return float(self._state[SPEEDS_AT + 1])
-
-    @property
-    def stiffness_velocity(self) -> float:
-        """Filtered difference of the stiffness encoder [rad/s], without any model."""
-        return float(self._state[SPEEDS_AT + 2])
-
-    @property
-    def deflection(self) -> float:
-        """Measured deflection [rad]."""
-        return float(self._state[SEEN_AT])
-
-    @property
-    def spring_torque(self) -> float:
-        """Spring torque [N m] of the actuator at the measured positions, Eq. (3); NaN where theta_ms cannot be one."""
-        return float(self._state[SEEN_AT + 1])
-
-    @property
-    def stiffness(self) -> float:
-        """Stiffness [N m/rad] of the actuator at the measured positions, Eq. (4); NaN where theta_ms cannot be one."""
-        return float(self._state[SEEN_AT + 2])
-
-    @property
-    def demanded_torque(self) -> float:
-        """Motor torque [N m] before any limit."""
-        return float(self._state[SEEN_AT + 3])
-
-    @property
-    def link_disturbance_estimate(self) -> float:
-        """Disturbance torque on the link [N m] by the observer."""
-        return float(self._state[SEEN_AT + 4])
-
-    @property
-    def motor_disturbance_estimate(self) -> float:
-        """Disturbance torque on the motor [N m] by the observer."""
-        return float(self._state[SEEN_AT + 5])
-
-    @property
-    def stiffness_disturbance_estimate(self) -> float:
-        """Disturbance torque on the stiffness motor [N m] by its observer."""
-        return float(self._state[SEEN_AT + 6])
 
     def begin(self, link: float, motor: float, stiffness_motor: float) -> None:
         """Hold where the rig is: both references := the positions [rad] measured; the observers start at the next tick.

@@ -22,17 +22,9 @@ from vssea_core.signals.disturbances import load
 from vssea_core.signals.references import TRANSITION_SIZE, reference_at, with_transition
 from vssea_core.signals.stiffness import SLEW_SIZE, SLEWED_SIZE, Slew
 from vssea_core.simulation.state import DRIVES_SIZE
+from vssea_core.tick.bounds import BLENDED, BOUNDS_SIZE, RIG_STIFFNESS, Bounds
 from vssea_core.tick.decision import decide, gains_at, is_changing
-from vssea_core.tick.limits import (
-    BLENDED,
-    BOUNDS_SIZE,
-    RIG_STIFFNESS,
-    Bounds,
-    Motion,
-    limit_brake,
-    limit_motor,
-    limit_stiffness,
-)
+from vssea_core.tick.limits import Motion, limit_brake, limit_motor, limit_stiffness
 
 READING, CLOSED, BRAKING, STIFFNESS_HOLDS = 0, 1, 2, 3
 """What the torques are: none, the law's, the brake's with a held stiffness, none with a held stiffness."""
