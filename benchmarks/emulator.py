@@ -1,6 +1,5 @@
 """The emulated rig as a host meets it: from SYNC to the last answer, through python-can's own socketcand backend."""
 
-import os
 import struct
 import time
 from pathlib import Path
@@ -36,8 +35,7 @@ def _idle(emulator: EmulatorHandle) -> float:
 
 
 def _processor_s(emulator: EmulatorHandle) -> float:
-    fields = Path(f"/proc/{emulator.process.pid}/stat").read_text().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return 1e-9 * int(Path(f"/proc/{emulator.process.pid}/schedstat").read_text().split()[0])
 
 
 def _send(bus: can.BusABC, can_id: int, data: bytes = b"") -> None:

@@ -25,6 +25,7 @@ EFFICIENCY = 0.7  # of the gear
 TORQUE_CONSTANT = (0.0705, 0.0534)  # N m/A of both motors, for their rated currents
 DECELERATION = (15.0, 5000.0)  # rad/s^2 of a quick stop, at the gear side
 STANDSTILL = (0.02, 2.0)  # rad/s below which an axis stands still
+RAMP_LOOK_S = 0.002  # how often the end of a ramp is looked for
 PATIENCE_S = 1.0  # an axis that cannot be stopped is let go this long after its ramp
 _LEAST, _MOST = -(1 << 31), (1 << 31) - 1
 
@@ -182,9 +183,16 @@ class EmulatedDrive(EmulatedNode):
         if self.state not in (State.REACTION, State.FAULT):
             super().recovered()
 
+    def deadline(self) -> float:
+        """Return when `turn` has to be called, soon while a ramp leads somewhere."""
+        return min(super().deadline(), self.now + RAMP_LOOK_S if self._is_leaving() else math.inf)
+
+    def _is_leaving(self) -> bool:
+        return self._after_stop not in (None, self.state)
+
     def watch_time(self) -> None:
         """Go where a ramp leads once the axis stands still, or after all patience."""
-        if self._after_stop not in (None, self.state) and (self._stands() or self.now >= self._stop_by):
+        if self._is_leaving() and (self._stands() or self.now >= self._stop_by):
             self._go(self._after_stop or self.state)
 
     def _stands(self) -> bool:

@@ -13,8 +13,8 @@ from vssea_core.actuator.parameters import Actuator
 
 MOTOR_NODE, STIFFNESS_NODE, LINK_NODE = 1, 2, 3
 SYNC, HEARTBEATS = 0x80, 0x700
-TURN_S = 5e-3
-"""How often deadlines are looked at when no frame comes; the plant is finer."""
+TURN_S = 0.01
+"""How often the clock is looked at when no deadline is nearer; one that is set in between is seen in time if it is longer."""
 RANGE = 0xFF07  # error code: what the plant's model says has ended
 Send = Callable[[int, bytes], None]
 
@@ -60,12 +60,13 @@ class Emulator:
         if now < self._next_turn:
             self.wire.turn(now)
             return
-        self._next_turn = now + TURN_S
         self.advance(now)
         self.network.turn(now)
         for node in self.nodes:
             node.turn()
         self.wire.turn(now)
+        deadlines = (self.network.deadline(), *(node.deadline() for node in self.nodes))
+        self._next_turn = min(now + TURN_S, *deadlines)
 
     def next_turn(self) -> float:
         """Return when `turn` has to be called at the latest."""

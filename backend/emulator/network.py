@@ -1,5 +1,6 @@
 """The bus as the emulated nodes see it: what they send goes out by a callback, and time is told, not read."""
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -13,7 +14,7 @@ class PeriodicFrame:
 
     def __init__(self, network: "EmulatedNetwork", can_id: int, data: bytes, period_s: float) -> None:
         self._network, self._can_id, self._data, self._period_s = network, can_id, bytes(data), period_s
-        self._due = network.now
+        self.due = network.now
 
     def update(self, data: Any) -> None:
         """Send other content from now on."""
@@ -25,9 +26,9 @@ class PeriodicFrame:
 
     def turn(self, now: float) -> None:
         """Send if it is time."""
-        if now < self._due:
+        if now < self.due:
             return
-        self._due = max(self._due + self._period_s, now)  # a stall is not followed by a burst
+        self.due = max(self.due + self._period_s, now)  # a stall is not followed by a burst
         self._network.send_message(self._can_id, self._data)
 
 
@@ -49,6 +50,10 @@ class EmulatedNetwork(canopen.Network):
         frame = PeriodicFrame(self, can_id, bytes(data), period)
         self.periodic.add(frame)
         return frame
+
+    def deadline(self) -> float:
+        """Return when the next periodic frame is due."""
+        return min((frame.due for frame in self.periodic), default=math.inf)
 
     def turn(self, now: float) -> None:
         """Send the periodic frames that are due."""

@@ -4,6 +4,7 @@ canopen's LocalNode serves SDO and makes heartbeats and emergencies; PDOs, the h
 are here. Time comes from the network.
 """
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -137,6 +138,13 @@ class EmulatedNode:
             for answer in self.transmits:
                 answer.event(self.latch)
         self.watch_time()
+
+    def deadline(self) -> float:
+        """Return when `turn` has to be called."""
+        if self._back_at is not None:
+            return self._back_at
+        pdos = (*self.receives, *self.transmits) if self.is_operational else ()
+        return min(*(pdo.deadline() for pdo in pdos), *self._heard.values(), math.inf, math.inf)
 
     def heard(self, producer: int) -> None:
         """Note a heartbeat of another node."""

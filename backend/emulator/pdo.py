@@ -1,5 +1,6 @@
 """Process data objects of an emulated node: mapping as it is written, synchronous and event-driven, with deadlines."""
 
+import math
 import struct
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -68,6 +69,11 @@ class _Pdo:
         self.timer_s = 0.0
         self.objects: tuple[tuple[int, int], ...] = ()
         self.layout = struct.Struct("<")
+        self._due = 0.0  # of a deadline or an event timer; 0 = none runs
+
+    def deadline(self) -> float:
+        """Return when the node has to look at it."""
+        return self._due or math.inf
 
     def configure(self) -> None:
         """Take over what the node's dictionary says."""
@@ -89,7 +95,6 @@ class ReceivePdo(_Pdo):
     def __init__(self, node: "EmulatedNode", number: int) -> None:
         super().__init__(node, number, 0x1400)
         self._pending: tuple[int, ...] | None = None
-        self._due = 0.0  # 0 = no deadline runs
         self._complaint = 0  # what was last wrong, told once
         self._missed = False
         self._subscribed = 0
@@ -150,7 +155,6 @@ class TransmitPdo(_Pdo):
     def __init__(self, node: "EmulatedNode", number: int) -> None:
         super().__init__(node, number, 0x1800)
         self._syncs = 0
-        self._due = 0.0
 
     def configure(self) -> None:
         """Take over what the node's dictionary says."""
@@ -165,6 +169,11 @@ class TransmitPdo(_Pdo):
         if self._syncs >= self.kind:
             self._syncs = 0
             self._send()
+
+    def deadline(self) -> float:
+        """Return when the event timer runs out."""
+        runs = self.exists and self.kind in EVENT_DRIVEN and self.timer_s
+        return self._due if runs else math.inf
 
     def event(self, latch: Callable[[], None]) -> None:
         """Send if the event timer has run out, with values of now."""

@@ -77,7 +77,7 @@ class Bench:
         """Let time pass without a host."""
         end = self.now + time_s
         while self.now < end:
-            self.now = min(end, self.now + 0.005)
+            self.now = min(end, max(self.now, self.emulator.next_turn()))
             self.emulator.turn(self.now)
         self.emulator.advance(self.now)
 

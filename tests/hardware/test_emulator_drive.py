@@ -227,9 +227,9 @@ def test_a_killed_host_leaves_no_torque_within_the_heartbeat_time_and_the_ramp(
     bench = guarded(moving(x6007=option))
     assert bench.write(MOTOR, 0x1029, 1, 1, 1) == 0
     began = bench.now
-    bench.wait(0.095)
+    bench.wait(0.0999)
     assert bench.state() == "operation enabled"
-    bench.wait(0.011)
+    bench.wait(0.0002)
     assert bench.emergencies() == [0x8130]
     assert bench.state() == passes
     bench.wait(2.0)
@@ -263,9 +263,9 @@ def test_a_host_that_hangs_but_still_beats_is_stopped_by_the_deadline_of_its_pdo
     assert bench.write(MOTOR, 0x6007, 0, 3, 2) == 0
     assert bench.write(MOTOR, 0x1400, 5, 20, 2) == 0
     bench.enabled(MOVING).run(0.2)
-    bench.wait(0.018)
+    bench.wait(0.0199)
     assert bench.state() == "operation enabled"
-    bench.wait(0.008)
+    bench.wait(0.0002)
     assert bench.emergencies() == [0x8250]
     assert bench.state() == "quick stop active"
     bench.run(1.0)
@@ -353,3 +353,27 @@ def test_a_fault_is_reset_by_a_rising_edge_and_the_drive_stays_off() -> None:
     bench.faults.clear()
     bench.run(0.1)  # bit 7 is still set: no edge
     assert bench.state() == "fault"
+
+
+def test_an_event_driven_pdo_comes_by_its_timer_with_values_of_then() -> None:
+    bench = Bench()
+    assert bench.write(MOTOR, 0x1800, 2, 255, 1) == 0
+    assert bench.write(MOTOR, 0x1800, 5, 30, 2) == 0
+    bench.nmt(1)
+    bench.emulator.plant.give(0, 30.0)
+    bench.taken(0x181)
+    bench.wait(0.3005)
+    frames = bench.taken(0x181)
+    assert len(frames) == 10
+    assert struct.unpack("<Hih", frames[-1])[1] > struct.unpack("<Hih", frames[-2])[1] > 0
+    bench.send(0x80)
+    assert bench.taken(0x181) == []
+
+
+def test_an_event_driven_receive_pdo_takes_effect_at_once() -> None:
+    bench = Bench()
+    assert bench.write(MOTOR, 0x1400, 2, 255, 1) == 0
+    bench.enabled()
+    bench.send(0x201, struct.pack("<Hh", ENABLE, 400))
+    bench.wait(0.002)
+    assert torque(bench) == pytest.approx(10.0, rel=1e-3)
