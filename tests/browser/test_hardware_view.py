@@ -19,6 +19,9 @@ pytestmark = pytest.mark.browser
 OpenPage = Callable[..., Page]
 RIG = "bench"
 SILENT_RIG = "nobody home"
+STEPS = 20
+NEXT = {"connected": "Home", "ready": "Arm", "stopped": "Reset", "fault": "Reset"}
+LATCHED = ("stopped", "fault")
 HIDE = """hidden => {
     Object.defineProperty(document, 'hidden', {get: () => hidden, configurable: true});
     document.dispatchEvent(new Event('visibilitychange'));
@@ -93,15 +96,15 @@ def expect_state(page: Page, *states: str) -> None:
     expect(page.locator("#state")).to_have_attribute("data-state", re.compile(f"^({'|'.join(states)})$"))
 
 
-def hardware(server: Server, open_page: OpenPage, colours: str = "dark") -> Page:
-    page = open_page(server, colours)
+def hardware(server: Server, open_page: OpenPage, colours: str = "dark", tolerant: bool = False) -> Page:
+    page = open_page(server, colours, tolerant)
     page.keyboard.press("6")
     expect(page.locator("#tab-hardware")).to_have_attribute("aria-selected", "true")
     return page
 
 
-def connected(server: Server, open_page: OpenPage, colours: str = "dark") -> Page:
-    page = hardware(server, open_page, colours)
+def connected(server: Server, open_page: OpenPage, colours: str = "dark", tolerant: bool = False) -> Page:
+    page = hardware(server, open_page, colours, tolerant)
     page.locator(f"[data-rig-name={RIG}]").click()
     panel(page, "Rig").get_by_role("button", name="Connect", exact=True).click()
     expect_state(page, "connected", "ready")
@@ -115,14 +118,31 @@ def next_step(page: Page, name: str) -> None:
     button.click()
 
 
-def armed(server: Server, open_page: OpenPage) -> Page:
-    page = connected(server, open_page)
-    if page.locator("#state").get_attribute("data-state") == "connected":
-        next_step(page, "Home")
-    expect_state(page, "ready")
-    next_step(page, "Arm")
-    expect_state(page, "armed")
-    return page
+def armed(server: Server, open_page: OpenPage, tolerant: bool = False) -> Page:
+    """A page in control of the armed rig. What a busy machine stops on the way there is reset, and tried again."""
+    page = connected(server, open_page, tolerant=tolerant)
+    page.keyboard.press("f")  # pictures that stand still leave their time to the emulated drives
+    for _ in range(STEPS):
+        was = now(page)
+        if was == "armed":
+            return page
+        if was in NEXT:
+            in_control(page)
+            next_step(page, NEXT[was])
+        if was in LATCHED:
+            page.locator("#reset-dialog button[value=reset]").click()
+        wait_until(page, "was => window.vssea.session.snapshot.state !== was", was)
+    raise AssertionError(f"the rig cannot be armed: {page.locator('#state').inner_text()}")
+
+
+def in_control(page: Page) -> None:
+    if page.locator("#control").inner_text() == "Nobody is in control":
+        next_step(page, "Take control")
+        expect(page.locator("#control")).to_have_text("You are in control")
+
+
+def now(page: Page) -> str:
+    return str(page.evaluate("window.vssea.session.snapshot.state"))
 
 
 def latest(page: Page, channel: str) -> float:
@@ -272,7 +292,7 @@ def test_a_second_page_is_refused_says_why_and_can_ask_for_control(rig: Server, 
     other = open_page(rig)
     name = other.evaluate("window.vssea.session.you")
     expect(other.locator("#control-strip")).to_contain_text("is in control")
-    expect(other.locator("#parameters fieldset").first).to_be_disabled()
+    expect(other.locator("[data-path='tuning.controller.natural_frequency'] input[type=text]")).to_be_disabled()
     other.keyboard.press("6")
     for button in other.locator(".jog-button").all():
         expect(button).to_be_disabled()
@@ -301,7 +321,7 @@ def test_a_page_that_closes_loses_control_and_the_rig_stops(rig: Server, open_pa
 def test_a_fault_is_told_with_its_number_and_kept_as_an_excerpt(
     rig: Server, emulator: EmulatorHandle, open_page: OpenPage
 ) -> None:
-    page = armed(rig, open_page)
+    page = armed(rig, open_page, tolerant=True)  # this server draws no scene: the replay's pose is refused
     emulator.control({"do": "fault", "name": "drive_fault", "node": 1, "value": 0x2310})
     try:
         expect_state(page, "fault")
@@ -315,6 +335,11 @@ def test_a_fault_is_told_with_its_number_and_kept_as_an_excerpt(
         expect(page.locator(".recording-title")).not_to_be_empty()
     finally:
         emulator.control({"do": "clear"})
+    page.locator("#tab-hardware").click()
+    in_control(page)
+    next_step(page, "Reset")
+    page.locator("#reset-dialog button[value=reset]").click()
+    expect_state(page, "ready", "connected")
 
 
 @pytest.mark.parametrize("colours", ["dark", "light"])
