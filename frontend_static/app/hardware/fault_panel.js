@@ -28,8 +28,8 @@ export class FaultPanel {
     const faults = isOnRig ? (rig.faults ?? []) : [];
     const standing = faults.filter(({ stands }) => stands);
     this.reset.hidden = !isOnRig || !LATCHED.has(state);
-    this.reset.disabled = !mayChange || standing.length > 0;
-    this.reset.title = operator.why || (standing.length ? "Not while a cause stands" : "The drives stay off");
+    this.reset.disabled = !mayChange;
+    this.reset.title = operator.why || "A drive that reports a fault is asked once to leave it; what stands is refused. The drives stay off";
     this.none.hidden = faults.length > 0;
     this.root.dataset.tone = faults.some(({ number }) => number < FIRST_STOP) ? "fault" : "";
     setText(this.panel.aside, standing.length ? `${standing.length} stand${standing.length === 1 ? "s" : ""}` : "");

@@ -45,11 +45,8 @@ function ofState({ state }, rig, step, told) {
     case "stopping":
       return step("arm", "busy", "Braking to a stop.");
     case "stopped":
-    case "fault": {
-      const stands = (rig.faults ?? []).some((fault) => fault.stands);
-      const words = stands ? `${sentence(told)} No Reset while a cause stands.` : sentence(told);
-      return step(rig.homed ? "arm" : "home", "fault", words, "reset", !stands);
-    }
+    case "fault":
+      return step(rig.homed ? "arm" : "home", "fault", sentence(told), "reset"); // what cannot be reset, the rig says
     default:
       return step("connect", "busy", told);
   }
