@@ -38,7 +38,7 @@ class Conduct:
         self.state: State = "starting"
         self.latch = Latch()
         self.motion = Motion(on.controller, on.limits)
-        self.monitors = Monitors(on.limits, on.actuator, on.period_s)
+        self.monitors = Monitors(on.limits, on.file.homing, on.actuator, on.period_s)
         self.homing: HomingLaw | None = None
         self.stopping: Stopping | None = None
         self.release: Release | None = None
@@ -108,7 +108,7 @@ class Conduct:
         closed = self.state in CLOSED and now - self._armed_s >= BLEND_S
         return Seen(
             on.measured, self._error, controller.spring_torque, controller.stiffness, controller.link_disturbance_estimate,
-            controller.motor_disturbance_estimate, on.homed, on.axes.any_on, closed,
+            controller.motor_disturbance_estimate, controller.stiffness_disturbance_estimate, on.homed, on.axes.any_on, closed,
             (on.axes.enabled("motor"), on.axes.enabled("stiffness")),
         )  # fmt: skip
 

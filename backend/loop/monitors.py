@@ -16,15 +16,17 @@ from backend.rigs.faults import (
     LEAF_TORQUE,
     LINK_FROZEN,
     LINK_JUMP,
+    MOTOR_FROZEN,
     MOTOR_JUMP,
     NOT_A_NUMBER,
     OUTSIDE,
     OVERSPEED,
+    STIFFNESS_ASTRAY,
     STIFFNESS_JUMP,
     TORQUE_NOT_GIVEN,
 )  # fmt: skip
 from backend.rigs.rig import Measured
-from backend.rigs.rig_file import Limits
+from backend.rigs.rig_file import Homing, Limits
 from vssea_core.actuator.parameters import Actuator
 from vssea_core.actuator.spring import stiffness_motor_position
 
@@ -36,7 +38,9 @@ STOP_SHARE = 0.25
 """Share of the way from the permitted range to the end stop that is as good as the stop."""
 FOLLOWING_S, MISMATCH_S, NOT_GIVEN_S, LEAF_S = 0.2, 0.05, 0.1, 0.02
 FOLLOWING_LEAK = 0.25
-FROZEN_S, FROZEN_MOTOR_RAD = 0.1, 0.03
+FROZEN_S, FROZEN_MOTOR_RAD, FROZEN_LINK_RAD = 0.1, 0.03, 0.06
+ASTRAY_S, ASTRAY_TORQUE = 0.03, 2.0
+"""A disturbance of this many times the homing torque, which overcomes the screw's friction, is no friction."""
 SPEED_S, TORQUE_S = 0.01, 0.03
 """Time constants over which the encoder's speed and the torques are averaged before they are judged."""
 
@@ -50,6 +54,7 @@ class Seen(NamedTuple):
     stiffness: float
     link_disturbance: float
     motor_disturbance: float
+    stiffness_disturbance: float
     homed: bool
     driven: bool  # an axis is enabled
     closed: bool  # the loops are closed and the torque is blended in
@@ -61,8 +66,9 @@ class Seen(NamedTuple):
 class Monitors:
     """All of them, with what they remember from one cycle to the next."""
 
-    def __init__(self, limits: Limits, actuator: Actuator, period_s: float) -> None:
+    def __init__(self, limits: Limits, homing: Homing, actuator: Actuator, period_s: float) -> None:
         self._limits, self._actuator, self._period_s = limits, actuator, period_s
+        self._astray_from = ASTRAY_TORQUE * homing.torque
         mechanism = actuator.stiffness
         constant = mechanism.spring_constant
         stiff, soft = (stiffness_motor_position(k, constant) for k in (mechanism.stiffest, mechanism.softest))
@@ -71,6 +77,7 @@ class Monitors:
         self._following = Lasting(FOLLOWING_S, period_s, FOLLOWING_LEAK)
         self._mismatch = Lasting(MISMATCH_S, period_s)
         self._leaf = Lasting(LEAF_S, period_s)
+        self._astray = Lasting(ASTRAY_S, period_s)
         self._not_given = {"motor": Lasting(NOT_GIVEN_S, period_s), "stiffness": Lasting(NOT_GIVEN_S, period_s)}
         self.restart()
 
@@ -82,12 +89,13 @@ class Monitors:
         self._link_jump = Jump(5.0, spring, self._period_s)
         self._motor_jump = Jump(0.5 * self._limits.motor_speed, motor, self._period_s)
         self._stiffness_jump = Jump(stiffness, 0.0, self._period_s)
-        self._frozen = Stillness(FROZEN_S, self._period_s)
+        self._link_still = Stillness(FROZEN_S, self._period_s)
+        self._motor_still = Stillness(FROZEN_S, self._period_s)
         self._motor_before: float | None = None
         self._stale = 0
         self.motor_speed = 0.0  # of the encoder alone, averaged
         self._torques = [0.0, 0.0, 0.0, 0.0]  # taken and seen of motor and stiffness axis, averaged
-        for lasting in (self._following, self._mismatch, self._leaf, *self._not_given.values()):
+        for lasting in (self._following, self._mismatch, self._leaf, self._astray, *self._not_given.values()):
             lasting.restart()
 
     def look(self, seen: Seen) -> Found:
@@ -161,18 +169,29 @@ class Monitors:
                 found.append((TORQUE_NOT_GIVEN, f"{axis} drive: asked {asked:.3g} N·m, given {given:.3g}"))
 
     def _look_at_loop(self, seen: Seen, found: Found) -> None:
-        m, limits = seen.measured, self._limits
+        limits = self._limits
         if self._following(seen.closed and abs(seen.error) > limits.following_error):
             found.append((FOLLOWING, f"{seen.error:.3f} rad, allowed {limits.following_error:g} for {FOLLOWING_S:g} s"))
         most = max(abs(seen.link_disturbance), abs(seen.motor_disturbance))
         if self._mismatch(seen.closed and most > limits.motor_torque):
             found.append((DISTURBANCE, f"{most:.0f} N·m, limit {limits.motor_torque:g}"))
+        if self._astray(seen.closed and abs(seen.stiffness_disturbance) > self._astray_from):
+            words = f"{seen.stiffness_disturbance:.2f} N·m are missing, allowed {self._astray_from:.2g}"
+            found.append((STIFFNESS_ASTRAY, words))
+        self._look_at_stillness(seen, found)
+
+    def _look_at_stillness(self, seen: Seen, found: Found) -> None:
+        m = seen.measured
         if not seen.closed:
-            self._frozen.restart()
+            self._link_still.restart()
+            self._motor_still.restart()
         elif m.link_age == 0 and m.motor_age == 0:
-            moved = self._frozen.other_moved(m.link_position, m.motor_position)
+            moved = self._link_still.other_moved(m.link_position, m.motor_position)
             if moved > FROZEN_MOTOR_RAD:
                 found.append((LINK_FROZEN, f"for {FROZEN_S:g} s or more; the motor moved {moved:.3f} rad"))
+            moved = self._motor_still.other_moved(m.motor_position, m.link_position)
+            if moved > FROZEN_LINK_RAD:
+                found.append((MOTOR_FROZEN, f"for {FROZEN_S:g} s or more; the link moved {moved:.3f} rad"))
 
 
 class Lasting:

@@ -8,9 +8,11 @@ from backend.rigs.faults import (
     HOMING,
     LEAF_TORQUE,
     MOTOR_DRIVE,
+    MOTOR_FROZEN,
     MOTOR_JUMP,
     MOTOR_SILENT,
     OUTSIDE,
+    STIFFNESS_ASTRAY,
     STIFFNESS_DRIVE,
     STIFFNESS_JUMP,
     STIFFNESS_SILENT,
@@ -22,15 +24,17 @@ LOST: dict[Fault, tuple[Axis, ...]] = {
     MOTOR_SILENT: ("motor",),
     MOTOR_DRIVE: ("motor",),
     MOTOR_JUMP: ("motor",),
+    MOTOR_FROZEN: ("motor",),
     STIFFNESS_SILENT: ("stiffness",),
     STIFFNESS_DRIVE: ("stiffness",),
     STIFFNESS_JUMP: ("stiffness",),
+    STIFFNESS_ASTRAY: ("stiffness",),
     BUS_SILENT: AXES,
     BUS_OFF: AXES,
 }
 """Faults after which an axis cannot be braked or held by the loop: its drive stops it."""
 
-UNHOMES = (STIFFNESS_JUMP, END_STOP, HOMING)
+UNHOMES = (STIFFNESS_JUMP, STIFFNESS_ASTRAY, END_STOP, HOMING)
 """Faults after which theta_ms is not known any more."""
 
 ONLY_DRIVEN = (OUTSIDE, DEFLECTION, LEAF_TORQUE)

@@ -139,6 +139,19 @@ DISTURBANCE = Fault(
     "The model (inertia, signs, stiffness) does not fit the rig: correct it, then Reset.",
 )  # fmt: skip
 
+MOTOR_FROZEN = Fault(
+    32,
+    "motor_encoder_frozen",
+    "The motor encoder stood still to the count while the link moved",
+    "Check whether the encoder is frozen or the motor is blocked, then Reset.",
+)
+STIFFNESS_ASTRAY = Fault(
+    33,
+    "stiffness_motor_astray",
+    "The stiffness motor does not move as its torque says",
+    "Check its encoder, its screw and the model, then home it again.",
+)
+
 STOP_REQUESTED = Fault(100, "stop_requested", "Stopped on request", "Reset to go on.")
 LEASE_EXPIRED = Fault(101, "lease_expired", "The operator's page has been silent", "Take control and Reset to go on.")
 WEB_SILENT = Fault(102, "web_silent", "The server has been silent for 250 ms", "Reset to go on.")

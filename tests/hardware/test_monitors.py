@@ -14,15 +14,17 @@ from backend.rigs.faults import (
     LEAF_TORQUE,
     LINK_FROZEN,
     LINK_JUMP,
+    MOTOR_FROZEN,
     MOTOR_JUMP,
     OUTSIDE,
     OVERSPEED,
+    STIFFNESS_ASTRAY,
     STIFFNESS_JUMP,
     TORQUE_NOT_GIVEN,
     Fault,
 )
 from backend.rigs.rig import Measured
-from backend.rigs.rig_file import Limits
+from backend.rigs.rig_file import Homing, Limits
 from vssea_core.actuator.parameters import Actuator
 
 T = 0.002
@@ -34,7 +36,7 @@ REST = Measured(0.3, 0.3, 70.0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0)
 
 
 def seen(measured: Measured = REST, **changes: object) -> Seen:
-    return Seen(measured, 0.0, 0.0, 100.0, 0.0, 0.0, True, True, True, (True, True))._replace(**changes)
+    return Seen(measured, 0.0, 0.0, 100.0, 0.0, 0.0, 0.0, True, True, True, (True, True))._replace(**changes)
 
 
 def found(monitors: Monitors, moment: Seen) -> list[Fault]:
@@ -43,7 +45,7 @@ def found(monitors: Monitors, moment: Seen) -> list[Fault]:
 
 @pytest.fixture
 def monitors() -> Monitors:
-    made = Monitors(LIMITS, Actuator(), T)
+    made = Monitors(LIMITS, Homing(torque=0.1), Actuator(), T)
     assert found(made, seen()) == []
     return made
 
@@ -198,3 +200,30 @@ def test_stillness_counts_from_when_the_axis_last_moved() -> None:
 
 def test_a_rig_at_rest_has_no_faults_for_ever(monitors: Monitors) -> None:
     assert [f for _ in range(2000) for f in found(monitors, seen())] == []
+
+
+def test_a_motor_that_stands_still_to_the_count_while_the_link_moves_has_a_frozen_encoder(monitors: Monitors) -> None:
+    def moves(link_by: float, motor_by: float) -> list[Fault]:
+        monitors.restart()
+        return [
+            fault
+            for k in range(100)
+            for fault in found(
+                monitors,
+                seen(REST._replace(link_position=0.3 + link_by * k / 100, motor_position=0.3 + motor_by * k / 100)),
+            )
+        ]
+
+    assert MOTOR_FROZEN in moves(0.08, 0.0)
+    assert MOTOR_FROZEN not in moves(0.04, 0.0)
+    assert MOTOR_FROZEN not in moves(0.08, 1e-3)
+
+
+def test_a_stiffness_motor_that_goes_astray_is_noticed_within_30_ms_and_friction_is_not(monitors: Monitors) -> None:
+    def blamed(torque: float, cycles: int) -> bool:
+        monitors.restart()
+        return any(STIFFNESS_ASTRAY in found(monitors, seen(stiffness_disturbance=torque)) for _ in range(cycles))
+
+    assert not blamed(0.19, 1000)  # homing's 0.10 N m overcome the friction
+    assert blamed(-0.21, 15)
+    assert not blamed(-0.21, 14)
