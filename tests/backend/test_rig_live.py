@@ -47,7 +47,7 @@ class Caller:
     """A program in control by its key."""
 
     def __init__(self, server: Server) -> None:
-        self.http = httpx.Client(base_url=server.url, timeout=60.0, trust_env=False)
+        self.http = httpx.Client(base_url=server.url, timeout=180.0, trust_env=False)  # kernels may have to be compiled
 
     def ask(self, command: str, **arguments: Any) -> dict[str, Any]:
         answer = self.http.post(f"/api/session/{command}", json=arguments)
@@ -68,8 +68,8 @@ class Caller:
         until(look, limit_s)
         return self.snapshot()
 
-    def connect(self) -> None:
-        key = self.ask("connect_rig", rig="bench")["key"]
+    def connect(self, rig: str = "bench") -> None:
+        key = self.ask("connect_rig", rig=rig)["key"]
         self.http.headers["X-VSSEA-Lease"] = key
         self.ask("take_control", expires_s=5.0)
 
@@ -125,6 +125,28 @@ def test_a_rig_is_checked_connected_homed_armed_moved_stopped_and_left_over_rest
     assert (after["state"], after["rig"]["kind"], after["scenario"]) == ("running", "simulated", before)
     recorded = caller.http.get("/api/recordings").json()["recordings"]
     assert any(recording["scenario"] == "rig bench" for recording in recorded)
+
+
+def test_a_reference_is_followed_held_and_left_on_a_rig_that_needs_no_bus(caller: Caller) -> None:
+    caller.connect("simulated")
+    with caller.renewing():
+        caller.ask("home_stiffness")
+        caller.comes("ready")
+        caller.ask("arm")
+        caller.ask("set_reference", replace={"kind": "sine", "amplitude": 0.1, "frequency_hz": 0.5})
+        assert caller.snapshot()["state"] == "armed"
+        caller.ask("follow")
+        assert caller.comes("running", 5.0)["rig"]["kind"] == "simulated"
+        trial = caller.ask("try_tuning", changes={"observer.bandwidth": 90.0})
+        assert trial["metrics"]["peak_error"][0] > 0.0
+        caller.ask("tune", changes={"observer.bandwidth": 90.0})
+        caller.ask("hold")
+        caller.comes("armed", 5.0)
+        assert caller.snapshot()["loop"]["free_core"] is not None or os.cpu_count() == 1
+        caller.ask("disarm")
+        caller.comes("ready", 10.0)
+        assert caller.snapshot()["loop"]["free_core"] is None
+    caller.ask("disconnect_rig")
 
 
 def test_a_killed_control_process_leaves_a_safe_rig_and_a_session_that_goes_on(
