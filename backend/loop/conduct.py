@@ -161,7 +161,11 @@ class Conduct:
             return 0.0
         if on.measured.stiffness_age != 0:
             return on.stiffness_torque
+        phase = homing.phase
         torque = homing.step(on.measured.stiffness_position)
+        if (phase, homing.phase) == ("stiff", "soft") and on.file.homing.align_motor:
+            on.align_motor()
+            self.monitors.restart()
         if homing.phase == "failed":
             self._note(HOMING, homing.failure)
             return on.stiffness_torque

@@ -69,11 +69,13 @@ class ConnectedRig:
         self.motor_torque = self.stiffness_torque = 0.0  # for the next exchange
         self._middle = 0.5 * (self.last_stage.theta_ms_stiff + self.last_stage.theta_ms_soft)
         self._begun = False
+        self._motor_zero = 0.0  # what an incremental motor encoder shows where the link's shows 0 [rad]
 
     def exchange(self) -> Found:
         """Exchange one cycle; what was not measured anew keeps its value and gets older. Return what went wrong."""
         try:
             measured = self.rig.exchange(self.motor_torque, self.stiffness_torque)
+            measured = measured._replace(motor_position=measured.motor_position - self._motor_zero)
             found = list(self.rig.bus_faults())
         except RigError as error:
             self.measured = _older(self.measured, True, True, True)
@@ -137,6 +139,13 @@ class ConnectedRig:
         stiff, soft = (stiffness_motor_position(k, constant) for k in (mechanism.stiffest, mechanism.softest))
         stops = Stops(stiff, soft, self._middle)
         return HomingLaw(self.file.homing, stops, mechanism.inertia, mechanism.damping, self.period_s)
+
+    def align_motor(self) -> None:
+        """Take the spring to be undeflected now: with the motor off and the spring stiff, no load deflects it much."""
+        m = self.measured
+        self._motor_zero += m.motor_position - m.link_position
+        self.measured = m._replace(motor_position=m.link_position)
+        self.begin()
 
     def take_home(self, offset: float, span_found: float) -> None:
         """Let the stiffness motor's position be theta_ms from now on."""

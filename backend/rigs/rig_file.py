@@ -116,6 +116,10 @@ class Homing(Part):
     )
     still_s: float = Field(0.15, gt=0.0, description="s without motion that make a stop.")
     time_limit_s: float = Field(30.0, gt=0.0, description="s after which homing fails.")
+    align_motor: bool = Field(
+        True,
+        description="Take the motor to be where the link is, at the stiff stop; false only for an absolute motor encoder.",
+    )
 
 
 class RigFile(Part):

@@ -13,7 +13,7 @@ from backend.rigs.faults import LINK_ENCODER, NO_BUS
 from backend.rigs.rig import RigError
 from backend.telemetry.beats import LEASE
 from backend.telemetry.ring import EPOCH, PERIOD_S, WIDTH
-from tests.hardware.rig_loop_bench import SCENARIO, RigBench, T, prepared
+from tests.hardware.rig_loop_bench import FILE, SCENARIO, RigBench, T, prepared
 from vssea_core.actuator.parameters import Actuator, EquilibriumMotor, Timing
 from vssea_core.channels import INDEX
 from vssea_core.signals.documents import ConstantDisturbance, Disturbances
@@ -112,6 +112,25 @@ def test_homing_makes_the_position_theta_ms_itself_and_ends_ready_with_the_drive
     assert bench.enabled() == []
     assert bench.rig.plant.theta_ms == pytest.approx(69.9, abs=0.5)
     assert bench.rig.given == (0.0, 0.0)
+
+
+def aligned(starts_at: float, align: bool) -> float:
+    """Home a rig whose motor encoder starts `starts_at` [rad] off, and return the deflection that it shows then [rad]."""
+    homing = FILE.homing.model_copy(update={"align_motor": align})
+    bench = RigBench(file=FILE.model_copy(update={"homing": homing}))
+    bench.rig.jump_encoder("motor", starts_at)
+    bench.connect()
+    bench.home()
+    return float(bench.channel("motor_position")[-1] - bench.channel("link_position")[-1])
+
+
+@pytest.mark.parametrize("starts_at", [0.0, 0.7, -120.0])
+def test_an_incremental_motor_encoder_is_aligned_with_the_link(starts_at: float) -> None:
+    assert aligned(starts_at, align=True) == pytest.approx(0.0, abs=2e-3)
+
+
+def test_an_absolute_motor_encoder_is_believed() -> None:
+    assert aligned(0.05, align=False) == pytest.approx(0.05, abs=2e-3)
 
 
 def test_homing_again_finds_the_same_place(bench: RigBench) -> None:
