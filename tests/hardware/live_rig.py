@@ -13,7 +13,8 @@ MOST_CYCLES = 5000
 
 
 def rig_file_at(port: int) -> RigFile:
-    return changed(bus={"options": {"host": "127.0.0.1", "port": port}})
+    """At the lowest rate, whose deadlines a computer with much else to do keeps."""
+    return changed(rate_hz=100, bus={"options": {"host": "127.0.0.1", "port": port}})
 
 
 def turns(rig: CanopenRig, until: Callable[[Measured], bool], motor: float = 0.0, stiffness: float = 0.0) -> Measured:
@@ -30,3 +31,4 @@ def arm_both(rig: CanopenRig) -> None:
     for axis in AXES:
         rig.arm(axis)
     turns(rig, lambda _: all(rig.axis(axis).state == "enabled" for axis in AXES))
+    rig.bus_faults()
