@@ -16,7 +16,7 @@ from backend.rigs.faults import BUS_OFF, HOT, MOTOR_DRIVE, REBOOTED, Fault
 from backend.rigs.rig import AXES
 from tests.backend.server import until
 from tests.hardware.fake_rig import GEAR_RATIO
-from tests.hardware.live_rig import TORQUE, arm_both, rig_file_at, turns
+from tests.hardware.live_rig import TORQUE, arm_both, pushed, rig_file_at, turns
 
 
 @pytest.fixture(scope="module")
@@ -66,11 +66,11 @@ def tells(rig: CanopenRig, expected: Fault) -> bool:
 def test_torque_moves_the_motor_in_its_direction_and_the_link_follows(rig: CanopenRig) -> None:
     arm_both(rig)
     start = rig.exchange(0.0, 0.0)
-    there = turns(rig, lambda m: m.motor_position > start.motor_position + 0.05, motor=TORQUE)
+    there = pushed(rig, lambda m: m.motor_position > start.motor_position + 0.05, motor=TORQUE)
     assert there.motor_torque == there.motor_torque_seen == pytest.approx(TORQUE, abs=0.05)
     assert there.link_position > start.link_position
-    turns(rig, lambda m: m.motor_position < start.motor_position, motor=-TORQUE)
-    turns(rig, lambda m: m.stiffness_position > start.stiffness_position + 0.5, stiffness=0.2)
+    pushed(rig, lambda m: m.motor_position < start.motor_position, motor=-TORQUE)
+    pushed(rig, lambda m: m.stiffness_position > start.stiffness_position + 0.5, stiffness=0.2)
 
 
 def test_measured_positions_are_the_emulators_own(rig: CanopenRig, emulator: EmulatorHandle) -> None:
