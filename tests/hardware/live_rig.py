@@ -13,7 +13,8 @@ MOST_CYCLES = 5000
 
 
 def rig_file_at(port: int) -> RigFile:
-    return changed(bus={"options": {"host": "127.0.0.1", "port": port}})
+    """At the lowest rate, whose deadlines a computer with much else to do keeps."""
+    return changed(rate_hz=100, bus={"options": {"host": "127.0.0.1", "port": port}})
 
 
 def turns(rig: CanopenRig, until: Callable[[Measured], bool], motor: float = 0.0, stiffness: float = 0.0) -> Measured:
@@ -25,8 +26,19 @@ def turns(rig: CanopenRig, until: Callable[[Measured], bool], motor: float = 0.0
     raise TimeoutError(f"not within {MOST_CYCLES} cycles")
 
 
+def pushed(rig: CanopenRig, until: Callable[[Measured], bool], motor: float = 0.0, stiffness: float = 0.0) -> Measured:
+    """As `turns`, arming again where this computer stood still for so long that a drive stopped by itself."""
+
+    def look(measured: Measured) -> bool:
+        for axis in AXES:
+            if rig.axis(axis).state in ("disabled", "stopping"):
+                rig.arm(axis)
+        return until(measured)
+
+    return turns(rig, look, motor, stiffness)
+
+
 def arm_both(rig: CanopenRig) -> None:
     turns(rig, lambda m: max(m.motor_age, m.stiffness_age) == 0)
-    for axis in AXES:
-        rig.arm(axis)
-    turns(rig, lambda _: all(rig.axis(axis).state == "enabled" for axis in AXES))
+    pushed(rig, lambda _: all(rig.axis(axis).state == "enabled" for axis in AXES))
+    rig.bus_faults()
