@@ -50,6 +50,8 @@ def test_every_field_is_listed_with_its_default_and_meaning(heading: str) -> Non
             assert default == "none"
         elif isinstance(field.default, BaseModel):
             assert default == "as below"
+        elif isinstance(field.default, bool):
+            assert default == f"`{str(field.default).lower()}`"
         elif isinstance(field.default, int | float):
             assert float(int(default.strip("`"), 16) if "0x" in default else default.strip("`")) == field.default
         else:
