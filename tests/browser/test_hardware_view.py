@@ -312,6 +312,29 @@ def test_a_second_page_is_refused_says_why_and_can_ask_for_control(rig: Server, 
     expect(other.locator("[data-way=left]")).to_be_enabled()
 
 
+def test_a_tuning_is_tried_in_simulation_before_it_reaches_the_rig(rig: Server, open_page: OpenPage) -> None:
+    page = connected(rig, open_page)
+    page.get_by_role("switch").check()
+    before = rig.get("/api/session").json()["tuning_id"]
+    page.locator("#tab-tune").click()
+    box = page.locator("[data-path='tuning.observer.bandwidth'] input[type=text]")
+    was = float(box.input_value())
+    box.fill(f"{0.9 * was:g}")
+    box.press("Enter")
+    result = page.locator("#parameters .try-result")
+    expect(result).to_contain_text("Not on the rig yet: observer bandwidth")
+    apply = result.get_by_role("button", name="Apply to the rig")
+    expect(apply).to_be_enabled()
+    expect(result.locator("dt").first).to_have_text("peak error")
+    assert rig.get("/api/session").json()["tuning_id"] == before
+    box.blur()
+    expect(box).to_have_value(f"{was:g}")
+    apply.click()
+    expect(result).to_be_hidden()
+    expect(box).to_have_value(f"{0.9 * was:g}")
+    assert rig.get("/api/session").json()["tuning_id"] > before
+
+
 def test_a_page_that_closes_loses_control_and_the_rig_stops(rig: Server, open_page: OpenPage) -> None:
     page = armed(rig, open_page)
     page.close()
