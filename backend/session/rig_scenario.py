@@ -5,13 +5,15 @@ import math
 from backend.problem import refused
 from backend.rigs.rig_file import RigFile
 from vssea_core.actuator.parameters import Actuator, Sensors, Timing
-from vssea_core.control.tuning import PositionObserver, StateFeedback, Tuning
+from vssea_core.control.tuning import ControllerModel, PositionObserver, StateFeedback, Tuning
 from vssea_core.scenario import Scenario
 from vssea_core.scenarios import REALISTIC
 from vssea_core.signals.documents import ConstantStiffness, Disturbances, JogReference
 
 DURATION_S = 10.0
 FULL_RATE_HZ = 500.0
+CAUTIOUS_POLES, CAUTIOUS_BANDWIDTH = 10.0, 60.0
+"""rad/s; calm over the whole range of stiffness at 500 Hz."""
 REST = JogReference(velocity=0.0)
 """Hold where it is."""
 
@@ -59,20 +61,31 @@ def rig_sensors(rig: RigFile) -> Sensors:
     )
 
 
-def standard_tuning(rate_hz: float) -> Tuning:
-    """Return the tuning of the scenario `realistic`; below 500 Hz all that it is fast in is slower in proportion."""
-    tuning = REALISTIC.tuning
+def cautious_tuning(rate_hz: float, actuator: Actuator) -> Tuning:
+    """Return a tuning to begin with: the actuator as model, slow poles, a slow observer; slower still below 500 Hz."""
     share = min(1.0, rate_hz / FULL_RATE_HZ)
-    if share == 1.0:
-        return tuning
-    loop = tuning.stiffness_loop
+    loop = REALISTIC.tuning.stiffness_loop
     slower = {name: share * getattr(loop, name) for name in ("bandwidth", "observer_bandwidth", "reference_bandwidth")}
-    poles = StateFeedback().natural_frequency
-    return tuning.model_copy(update={
-        "controller": StateFeedback(natural_frequency=share * poles),
-        "observer": PositionObserver(bandwidth=share * PositionObserver().bandwidth),
+    return REALISTIC.tuning.model_copy(update={
+        "controller": StateFeedback(natural_frequency=share * CAUTIOUS_POLES),
+        "observer": PositionObserver(bandwidth=share * CAUTIOUS_BANDWIDTH),
         "stiffness_loop": loop.model_copy(update=slower),
+        "model": model_of(actuator),
     })  # fmt: skip
+
+
+def model_of(actuator: Actuator) -> ControllerModel:
+    """Return what the controller believes if it believes the actuator's document."""
+    link, motor, mechanism = actuator.link, actuator.motor, actuator.stiffness
+    return ControllerModel(
+        link_inertia=link.inertia,
+        link_damping=link.damping,
+        motor_inertia=motor.inertia,
+        motor_damping=motor.damping,
+        spring_constant=mechanism.spring_constant,
+        stiffness_inertia=mechanism.inertia,
+        stiffness_damping=mechanism.damping,
+    )
 
 
 def unfit_because(tuning: Tuning) -> str | None:

@@ -11,7 +11,7 @@ from backend.presets.last import InForce
 from backend.problem import Problem
 from backend.rigs.rig_file import RigFile
 from backend.session.planning import planned
-from backend.session.rig_scenario import rig_scenario, standard_tuning, unfit_because
+from backend.session.rig_scenario import cautious_tuning, rig_scenario, unfit_because
 from vssea_core.actuator.parameters import Actuator
 from vssea_core.control.tuning import Tuning
 from vssea_core.scenario import Scenario
@@ -44,7 +44,7 @@ class Begun:
 async def begun_scenario(session: "Session", rig: RigFile) -> Begun:
     """Return what a rig begins with. Raises Problem if its actuator is unknown or no tuning fits."""
     actuator = await asyncio.to_thread(actuator_of, session, rig)
-    candidates, passed_over = await asyncio.to_thread(_candidates, session, rig)
+    candidates, passed_over = await asyncio.to_thread(_candidates, session, rig, actuator)
     for candidate in candidates:
         why = unfit_because(candidate.tuning)
         if why is None:
@@ -65,7 +65,7 @@ async def begun_scenario(session: "Session", rig: RigFile) -> Begun:
     )
 
 
-def _candidates(session: "Session", rig: RigFile) -> tuple[list[Candidate], list[str]]:
+def _candidates(session: "Session", rig: RigFile, actuator: Actuator) -> tuple[list[Candidate], list[str]]:
     """Return what may be meant, and what is not to be had: the rig's own preset goes first, unless it was connected before."""
     found, missing = [], []
     if rig.preset is not None and not session.rig.connected:
@@ -75,7 +75,7 @@ def _candidates(session: "Session", rig: RigFile) -> tuple[list[Candidate], list
         except Problem as problem:
             missing.append(f"not with preset {rig.preset}: {problem.detail.rstrip('.')}")
     found.append(Candidate("the tuning that was in force", session.scenario.tuning, session.preset))
-    found.append(Candidate("the tuning of realistic", standard_tuning(rig.rate_hz)))
+    found.append(Candidate("a cautious tuning", cautious_tuning(rig.rate_hz, actuator)))
     return found, missing
 
 

@@ -10,7 +10,9 @@ from backend.presets.last import read_last
 from backend.problem import Problem
 from backend.session.control_link import RIG_ENTRY
 from backend.session.journal import Change, Run, Told
+from backend.session.rig_scenario import cautious_tuning
 from tests.backend.rig_bench import EMULATOR, HOLD, RigBench, Shelf, at_rig
+from vssea_core.actuator.parameters import Actuator
 from vssea_core.control.tuning import PositionObserver
 from vssea_core.scenarios import NOMINAL, REALISTIC
 from vssea_core.signals.documents import SineReference
@@ -64,9 +66,9 @@ def test_a_rig_is_connected_with_a_scenario_made_of_its_file(data_dir: Path) -> 
 def test_a_tuning_without_a_position_observer_is_passed_over_with_a_word(data_dir: Path) -> None:
     async def work(bench: RigBench) -> None:
         await bench.ask("connect_rig", rig="emulator")
-        assert bench.session.scenario.tuning == REALISTIC.tuning
+        assert bench.session.scenario.tuning == cautious_tuning(500.0, Actuator())
         words = bench.events("rig")[-1]
-        assert "begins with the tuning of realistic" in words
+        assert "begins with a cautious tuning" in words
         assert "no position observer" in words
 
     at_rig(data_dir, work, scenario=NOMINAL)
