@@ -18,7 +18,11 @@ def rig_text(bus_port: int, rate_hz: int) -> str:
     """Return the built-in rig's file with another port and rate."""
     text = files("backend.rigs").joinpath("emulator.toml").read_text("utf-8")
     built_in = tomllib.loads(text)
-    text = text.replace('name = "emulator"', f'name = "{RIG}"').replace("port = 29536", f"port = {bus_port}")
+    text = (
+        text.replace("speed = 40.0", "speed = 120.0")
+        .replace('name = "emulator"', f'name = "{RIG}"')
+        .replace("port = 29536", f"port = {bus_port}")
+    )
     return text.replace(f"rate_hz = {built_in['rate_hz']}", f"rate_hz = {rate_hz}")
 
 
@@ -44,6 +48,9 @@ def introduce(server: Server, emulator: EmulatorHandle, rate_hz: int) -> None:
 
 def armed(operator: Operator, **tuning: Any) -> None:
     """Connect, home and arm; the lease is renewed from here on."""
+    if operator.snapshot["rig"].get("connected"):
+        operator.ask("take_control")
+        operator.ask("disconnect_rig")
     operator.ask("connect_rig", rig=RIG)
     operator.present = True
     operator.wait_for("connected", "ready")
