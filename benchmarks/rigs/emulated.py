@@ -12,6 +12,7 @@ from benchmarks.live_server import Server, running_server
 from benchmarks.rigs.operator import Operator
 
 RIG = "measured"
+CENTRED = ("holding 0.000 rad", "holding -0.000 rad")
 
 
 def rig_text(bus_port: int, rate_hz: int) -> str:
@@ -63,3 +64,5 @@ def armed(operator: Operator, **tuning: Any) -> None:
     operator.wait(lambda: not operator.snapshot["rig"]["cannot_arm"], "readiness to arm")
     operator.ask("arm")
     operator.wait_for("armed")
+    operator.ask("go_to", position=0.0, speed=0.6)
+    operator.wait(lambda: operator.snapshot["rig"]["motion"] in CENTRED, "centre")
