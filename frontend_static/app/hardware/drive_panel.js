@@ -55,7 +55,7 @@ export class DrivePanel {
     setText(this.linkState, isOnRig ? "encoder" : "–");
     age(this.linkAge, isOnRig ? rig.link_age : undefined);
     const ailing = axes.filter(({ error_code, error_words }) => error_code || error_words);
-    const words = ailing.map(({ axis, error_code, error_words }) => `${axis} drive: ${error_words || "error"}${error_code ? ` (0x${error_code.toString(16)})` : ""}`);
+    const words = ailing.map(({ axis, error_code, error_words }) => `${axis} drive: ${error_words || `error 0x${error_code.toString(16)}`}`);
     setText(this.errors, words.join("; "));
     this.errors.hidden = words.length === 0;
     this.#showPositions();
