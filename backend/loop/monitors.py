@@ -7,7 +7,7 @@ import math
 from typing import NamedTuple
 
 from backend.loop.axes import Found
-from backend.loop.travel import Jump, Stillness
+from backend.loop.travel import Jump, Speed, Stillness
 from backend.rigs.faults import (
     DEFLECTION,
     DISTURBANCE,
@@ -16,6 +16,7 @@ from backend.rigs.faults import (
     LEAF_TORQUE,
     LINK_FROZEN,
     LINK_JUMP,
+    LINK_OVERSPEED,
     MOTOR_FROZEN,
     MOTOR_JUMP,
     NOT_A_NUMBER,
@@ -91,9 +92,7 @@ class Monitors:
         self._stiffness_jump = Jump(stiffness, 0.0, self._period_s)
         self._link_still = Stillness(FROZEN_S, self._period_s)
         self._motor_still = Stillness(FROZEN_S, self._period_s)
-        self._motor_before: float | None = None
-        self._stale = 0
-        self.motor_speed = 0.0  # of the encoder alone, averaged
+        self._motor, self._link = (Speed(SPEED_S, self._period_s) for _ in range(2))
         self._torques = [0.0, 0.0, 0.0, 0.0]  # taken and seen of motor and stiffness axis, averaged
         for lasting in (self._following, self._mismatch, self._leaf, self._astray, *self._not_given.values()):
             lasting.restart()
@@ -102,9 +101,7 @@ class Monitors:
         """Return every fault whose condition is fulfilled in this cycle, with its figures."""
         found: Found = []
         self._look_at_jumps(seen.measured, found)
-        self._speed(seen.measured)
-        if seen.driven and abs(self.motor_speed) > TOO_MUCH * self._limits.motor_speed:
-            found.append((OVERSPEED, f"{self.motor_speed:.2f} rad/s, limit {self._limits.motor_speed:g}"))
+        self._look_at_speeds(seen, found)
         if seen.homed:
             self._look_at_positions(seen, found)
         self._look_at_torques(seen, found)
@@ -126,15 +123,19 @@ class Monitors:
             else:
                 jump.miss()
 
-    def _speed(self, m: Measured) -> None:
-        self._stale += 1
-        if m.motor_age != 0:
-            return
-        if self._motor_before is not None:
-            passed = self._stale * self._period_s
-            share = min(1.0, passed / SPEED_S)
-            self.motor_speed += share * ((m.motor_position - self._motor_before) / passed - self.motor_speed)
-        self._motor_before, self._stale = m.motor_position, 0
+    def _look_at_speeds(self, seen: Seen, found: Found) -> None:
+        m, limits = seen.measured, self._limits
+        self._motor.take(m.motor_position, m.motor_age)
+        self._link.take(m.link_position, m.link_age)
+        if seen.driven and abs(self._motor.value) > TOO_MUCH * limits.motor_speed:
+            found.append((OVERSPEED, f"{self._motor.value:.2f} rad/s, limit {limits.motor_speed:g}"))
+        if seen.closed and abs(self._link.value) > limits.link_speed:
+            found.append((LINK_OVERSPEED, f"{self._link.value:.2f} rad/s, limit {limits.link_speed:g}"))
+
+    @property
+    def motor_speed(self) -> float:
+        """Speed of the motor [rad/s] by its encoder alone, averaged."""
+        return self._motor.value
 
     def _look_at_positions(self, seen: Seen, found: Found) -> None:
         m, limits = seen.measured, self._limits

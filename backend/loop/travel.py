@@ -28,6 +28,27 @@ class Jump:
         return abs(self.by) > self.most
 
 
+class Speed:
+    """Speed of an axis [rad/s] by its encoder alone, averaged over `over_s`."""
+
+    def __init__(self, over_s: float, period_s: float) -> None:
+        self._over_s, self._period_s = over_s, period_s
+        self._before: float | None = None
+        self._cycles = 0
+        self.value = 0.0
+
+    def take(self, position: float, age: int) -> None:
+        """Take a position [rad] of this cycle, or one that is `age` cycles old and changes nothing."""
+        self._cycles += 1
+        if age != 0:
+            return
+        if self._before is not None:
+            passed = self._cycles * self._period_s
+            share = min(1.0, passed / self._over_s)
+            self.value += share * ((position - self._before) / passed - self.value)
+        self._before, self._cycles = position, 0
+
+
 class Stillness:
     """How far another axis has moved while this one stood still to the count, for some time at least."""
 

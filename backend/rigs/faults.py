@@ -151,6 +151,9 @@ STIFFNESS_ASTRAY = Fault(
     "The stiffness motor does not move as its torque says",
     "Check its encoder, its screw and the model, then home it again.",
 )
+LINK_OVERSPEED = Fault(
+    34, "link_overspeed", "The link was faster than its limit", "Change tuning or reference, then Reset."
+)
 
 STOP_REQUESTED = Fault(100, "stop_requested", "Stopped on request", "Reset to go on.")
 LEASE_EXPIRED = Fault(101, "lease_expired", "The operator's page has been silent", "Take control and Reset to go on.")

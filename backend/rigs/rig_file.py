@@ -83,6 +83,9 @@ class Limits(Part):
     motor_torque: float = Field(gt=0.0, description="N·m, gear side.")
     motor_torque_rate: float = Field(gt=0.0, description="N·m/s.")
     motor_speed: float = Field(gt=0.0, description="rad/s, gear side; 1.25 times it is a fault.")
+    link_speed: float = Field(
+        3.0, gt=0.0, description="rad/s of the link while the loops are closed; faster is a fault."
+    )
     stiffness_torque: float = Field(gt=0.0, description="N·m of the stiffness motor.")
     stiffness_speed: float = Field(gt=0.0, description="rad/s of the stiffness motor.")
     link_low: float = Field(description="rad.")

@@ -54,7 +54,10 @@ def armed(operator: Operator, **tuning: Any) -> None:
         operator.ask("disconnect_rig")
     operator.ask("connect_rig", rig=RIG)
     operator.present = True
-    operator.wait_for("connected", "ready")
+    operator.wait(lambda: bool(operator.snapshot["rig"].get("connected")), "connection")
+    if operator.state == "fault":  # a drive keeps its fault until it is reset
+        operator.ask("reset")
+        operator.wait_for("connected")
     operator.wait(lambda: operator.snapshot["rig"].get("lease_left_s", 0.0) > 0.0, "first renewal")
     if tuning:
         operator.ask("tune", changes=tuning)

@@ -14,6 +14,7 @@ from backend.rigs.faults import (
     LEAF_TORQUE,
     LINK_FROZEN,
     LINK_JUMP,
+    LINK_OVERSPEED,
     MOTOR_FROZEN,
     MOTOR_JUMP,
     OUTSIDE,
@@ -227,3 +228,19 @@ def test_a_stiffness_motor_that_goes_astray_is_noticed_within_30_ms_and_friction
     assert not blamed(0.19, 1000)  # homing's 0.10 N m overcome the friction
     assert blamed(-0.21, 15)
     assert not blamed(-0.21, 14)
+
+
+def test_a_link_beyond_its_speed_is_a_fault_within_20_ms_while_the_loops_are_closed(monitors: Monitors) -> None:
+    def cycles_until(speed: float, closed: bool) -> int | None:
+        monitors.restart()
+        for k in range(100):
+            moved = REST._replace(link_position=0.3 + speed * k * T, motor_position=0.3 + 0.5 * speed * k * T)
+            if LINK_OVERSPEED in found(monitors, seen(moved, closed=closed)):
+                return k
+        return None
+
+    assert cycles_until(2.9, closed=True) is None
+    assert cycles_until(-6.0, closed=False) is None
+    noticed = cycles_until(-6.0, closed=True)
+    assert noticed is not None
+    assert noticed <= 10
