@@ -7,8 +7,8 @@ from backend.loop import messages
 from backend.problem import Problem
 from backend.rigs.rig_file import Limits
 from backend.session.arguments import Nothing
-from backend.session.rig_arguments import Going, Jogging
 from backend.session.planning import planned
+from backend.session.rig_arguments import Going, Jogging
 from backend.session.rig_limits import check_jog, check_move
 from backend.session.uninterrupted import to_the_end
 from vssea_core.signals.documents import ConstantStiffness
