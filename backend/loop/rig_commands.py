@@ -85,7 +85,7 @@ def _cannot_home(conduct: Conduct) -> str | None:
         return "the rig is being armed; wait"
     if conduct.stopping is not None and conduct.stopping.holding:
         return "the stiffness axis holds a loaded spring; take the load off first"
-    if status.state != "disabled":
+    if status.state not in ("disabled", "stopping"):  # a drive that was left holding by its quick stop is taken over
         return f"the stiffness drive is not ready ({status.words}); look at its status"
     return None
 

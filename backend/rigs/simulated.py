@@ -93,8 +93,8 @@ class SimulatedRig:
         self._homed_by = stiffness_offset
 
     def arm(self, axis: Axis) -> None:
-        """Let a disabled axis go to "enabled" within a few exchanges; out of a fault or a stop it does not go."""
-        if self._drives[axis].state == "disabled":
+        """Let an axis go to "enabled" within a few exchanges, also out of a stop; out of a fault it does not go."""
+        if self._drives[axis].state in ("disabled", "stopping"):
             self._drives[axis].become("enabling")
 
     def stop(self, axis: Axis) -> None:

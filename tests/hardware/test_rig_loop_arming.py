@@ -11,6 +11,7 @@ from backend.loop.rig_commands import cannot_arm
 from backend.loop.rig_states import ALLOWED, SIMULATION_ONLY, refusal
 from backend.rigs.faults import LINK_ENCODER, NO_BUS
 from backend.rigs.rig import RigError
+from backend.rigs.simulated import SimulatedRig
 from backend.telemetry.beats import LEASE
 from backend.telemetry.ring import EPOCH, PERIOD_S, WIDTH
 from tests.hardware.rig_loop_bench import FILE, SCENARIO, RigBench, T, prepared
@@ -131,6 +132,18 @@ def test_an_incremental_motor_encoder_is_aligned_with_the_link(starts_at: float)
 
 def test_an_absolute_motor_encoder_is_believed() -> None:
     assert aligned(0.05, align=False) == pytest.approx(0.05, abs=2e-3)
+
+
+def test_a_stiffness_drive_that_was_left_in_its_quick_stop_can_be_homed(bench: RigBench) -> None:
+    """As it is found when the bus was lost and the rig is connected again."""
+    bench.connect()
+    SimulatedRig.arm(bench.rig, "stiffness")
+    bench.pass_s(0.1)
+    SimulatedRig.stop(bench.rig, "stiffness")
+    bench.pass_s(0.1)
+    assert bench.rig.axis("stiffness").state == "stopping"
+    bench.home()
+    assert bench.enabled() == []
 
 
 def test_homing_again_finds_the_same_place(bench: RigBench) -> None:

@@ -162,7 +162,7 @@ def test_the_motor_halts_by_itself_when_it_is_told_to_stop() -> None:
     assert made.axis("motor").state == "stopping"
     made.arm("motor")
     made.exchange(40.0, 0.0)
-    assert made.axis("motor").state == "stopping", "a stop is left by disarming only"
+    assert made.axis("motor").state == "enabling", "a stop is left by arming, as a drive's quick stop is"
 
 
 def test_the_stiffness_motor_halts_where_it_is_and_holds_its_load() -> None:
