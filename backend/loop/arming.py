@@ -44,7 +44,7 @@ def _reasons(now: Situation, limits: Limits, axes: Axes, latch: Latch) -> list[s
     found += [
         f"the {NAMES[axis]} is not ready ({axes.status[axis].words}); look at its status"
         for axis in AXES
-        if axes.status[axis].state not in ("disabled", "enabled")
+        if axes.status[axis].state not in ("disabled", "enabled", "stopping")
     ]
     found += _outside(now, limits)
     for name, speed, most in zip(

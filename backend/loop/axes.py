@@ -85,9 +85,9 @@ class Axes:
         return found
 
     def _give_up(self, axis: Axis) -> None:
-        """Take back the wish to be enabled, so that nothing brings the axis back when its fault is gone."""
+        """Take back the wish to be enabled, so that nothing brings the axis back; a drive that stops it may go on with that."""
         if self._wanted[axis]:
-            self.disarm(axis)
+            (self.stop if self.status[axis].state == "stopping" else self.disarm)(axis)
 
     def _see(self, axis: Axis) -> None:
         self.status[axis] = self._rig.axis(axis)

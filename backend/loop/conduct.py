@@ -1,5 +1,6 @@
 """What a connected rig does: its state, what each command and each fault makes of it, and the torques of every cycle."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -61,11 +62,11 @@ class Conduct:
 
     def guard(self, late_in_a_row: bool, late: Fault) -> None:
         """Look whether operator, server and clock are as they have to be."""
-        if self.state in WATCHED or self.arming is not None:
+        if self.state in WATCHED or self.closed or self.arming is not None:
             silent = self.watchdogs.expired()
             if silent is not None:
                 self.stop(silent.sentence())
-        if late_in_a_row and self.state in CLOSED:
+        if late_in_a_row and self.closed:
             self._note(late, "")
 
     def cycle(self, row: NDArray[np.float64]) -> None:
@@ -80,7 +81,7 @@ class Conduct:
         for fault, detail in found:
             if fault not in ONLY_DRIVEN or self.state in DRIVEN or fault in self.latch:
                 self._note(fault, detail)
-        if oldest(on.measured) >= STOPS and (self.state in WATCHED or self.arming is not None):
+        if oldest(on.measured) >= STOPS and (self.state in WATCHED or self.closed or self.arming is not None):
             self.stop(stop_sentence(on.measured))
         self._go_on_arming(now)
         self._go_on_resetting(now)
@@ -92,6 +93,11 @@ class Conduct:
             self._note(NOT_A_NUMBER, "")
         self._error = row[INDEX["error"]]
         self.match_motion()
+
+    @property
+    def closed(self) -> bool:
+        """Whether the loops are closed: armed, running, or coming to rest before they are opened."""
+        return self.state in CLOSED or self.rest_until is not None
 
     def match_motion(self) -> None:
         """Be armed while the link is held, running while it moves."""
@@ -105,7 +111,7 @@ class Conduct:
 
     def _seen(self, now: float) -> Seen:
         on, controller = self.on, self.on.controller
-        closed = self.state in CLOSED and now - self._armed_s >= BLEND_S
+        closed = self.closed and now - self._armed_s >= BLEND_S
         return Seen(
             on.measured, self._error, controller.spring_torque, controller.stiffness, controller.link_disturbance_estimate,
             controller.motor_disturbance_estimate, controller.stiffness_disturbance_estimate, on.homed, on.axes.any_on, closed,
@@ -124,7 +130,7 @@ class Conduct:
                 self.release = None
                 self._end_stop()
             return 0.0, torque
-        if self.rest_until is not None or self.state in CLOSED:
+        if self.closed:
             self.motion.advance(now)
             if self.rest_until is not None and (not self.motion.moving or now >= self.rest_until):
                 self._to_safety()
@@ -143,7 +149,9 @@ class Conduct:
         if self.arming is not None:
             course_mode, share, brakes, holds = law.STIFFNESS_HOLDS, 0.0, False, on.axes.enabled("stiffness")
         else:
-            course = stopping.step(Moment(now, self.monitors.motor_speed, on.controller.spring_torque))
+            known = oldest(on.measured) < STOPS
+            torque = on.controller.spring_torque if known else math.nan
+            course = stopping.step(Moment(now, self.monitors.motor_speed, torque))
             brakes, share, holds = course
             course_mode = law.BRAKING if brakes else law.STIFFNESS_HOLDS if holds else law.READING
         motor_torque, stiffness_torque = on.tick(course_mode, 1.0, row)

@@ -7,11 +7,21 @@ from backend.rigs.rig import AXES, Rig, RigError
 
 RAMP_CYCLES = 25
 OFF_CYCLES = 100
+OFF = ("disabled", "fault", "unknown")
 
 
-def leave(rig: Rig, motor_torque: float, stiffness_torque: float, wait: Callable[[], object]) -> None:
-    """Take the torques [N m] last asked for to zero, disable both axes and close the bus; `wait` waits for a cycle."""
+def leave(
+    rig: Rig, motor_torque: float, stiffness_torque: float, wait: Callable[[], object], *, loaded: bool = False
+) -> None:
+    """Take the torques [N m] last asked for to zero, disable both axes and close the bus; `wait` waits for a cycle.
+
+    The stiffness axis of a `loaded` spring is left to its drive, which goes on holding it.
+    """
     try:
+        if loaded:
+            with suppress(RigError):
+                rig.stop("stiffness")
+                stiffness_torque = 0.0
         with suppress(RigError):
             if motor_torque != 0.0 or stiffness_torque != 0.0:
                 for cycle in range(RAMP_CYCLES - 1, -1, -1):
@@ -19,11 +29,12 @@ def leave(rig: Rig, motor_torque: float, stiffness_torque: float, wait: Callable
                     wait()
         for axis in AXES:
             with suppress(RigError):
-                rig.disarm(axis)
+                if not (loaded and axis == "stiffness"):
+                    rig.disarm(axis)
         with suppress(RigError):
             for _ in range(OFF_CYCLES):
                 rig.exchange(0.0, 0.0)
-                if all(rig.axis(axis).state in ("disabled", "fault", "unknown") for axis in AXES):
+                if all(rig.axis(axis).state in (*OFF, *(("stopping",) if loaded else ())) for axis in AXES):
                     break
                 wait()
     finally:

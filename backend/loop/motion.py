@@ -17,6 +17,8 @@ STIFFNESS_STEP_S = 0.02
 """A jogged stiffness is commanded anew this often; the reference filter behind it makes it smooth."""
 NEAR_ENOUGH = 0.2
 """rad that a reference may start away from where the link is held."""
+CHANGE_WITHIN = 0.5
+"""rad that a reference set while another is followed may be away; the transition then asks for 1.2 rad/s at most."""
 SHORTEST = 1e-3
 """rad below which a way is none."""
 AT_REST = Target(1e-3, 1e-3, 0.05, 1.0, 50.0)
@@ -96,10 +98,11 @@ class Motion:
             self._tell("reference", why)
 
     def set_reference(self, reference: Reference) -> None:
-        """Keep a reference for `follow`; while following, change to it at once."""
-        self.wanted = reference
+        """Keep a reference for `follow`; while following, change to it at once. Raises ValueError if it is too far away then."""
         if self.kind == "following":
+            self._check_start(reference, CHANGE_WITHIN, "hold, go")
             self._controller.set_reference(reference)
+        self.wanted = reference
 
     def set_stiffness(self, reference: StiffnessReference) -> None:
         """Command another stiffness; it ends a stiffness jog."""
@@ -108,16 +111,25 @@ class Motion:
 
     def follow(self) -> None:
         """Follow the reference that was set. Raises ValueError if it starts elsewhere."""
-        start = self._start_of(self.wanted)
-        away = start - self._controller.reference_now().r
-        if abs(away) > NEAR_ENOUGH:
-            raise ValueError(
-                f"the reference starts {abs(away):.2f} rad from where the link is held, expected at most {NEAR_ENOUGH:g} rad; "
-                f"go to {start:.3f} rad first"
-            )
+        self._check_start(self.wanted, NEAR_ENOUGH, "go")
         self._controller.set_reference(self.wanted)
         self.kind = "following"
         self._tell("reference", "follow")
+
+    def _check_start(self, reference: Reference, most: float, do: str) -> None:
+        if reference.kind == "step" and abs(reference.target - reference.origin) > NEAR_ENOUGH:
+            raise ValueError(
+                f"a raw step of {abs(reference.target - reference.origin):.2f} rad is too hard for a rig, expected at most "
+                f"{NEAR_ENOUGH:g} rad; take a filtered step or a move"
+            )
+        start = self._start_of(reference)
+        away = abs(start - self._controller.reference_now().r)
+        most = NEAR_ENOUGH if reference.kind == "step" else most
+        if away > most:
+            raise ValueError(
+                f"the reference starts {away:.2f} rad from where the link is, expected at most {most:g} rad; "
+                f"{do} to {start:.3f} rad first"
+            )
 
     def go_to(self, position: float, speed: float) -> None:
         """Go to a position [rad] within `speed` [rad/s]. Raises ValueError outside the rig's limits."""

@@ -19,13 +19,15 @@ from backend.loop.watchdogs import Watchdogs
 from backend.rigs.faults import LOOP_LATE, PROCESS_ENDED, STOP_REQUESTED
 from backend.rigs.rig import Rig, RigError
 from backend.rigs.rig_file import RigFile
-from backend.telemetry.beats import Beats
+from backend.telemetry.beats import WEB, Beats
 from backend.telemetry.ring import OVERRUNS, RUNS, WIDTH, RingWriter
 from backend.telemetry.stop_flag import StopFlag
 from vssea_core.scenario import Scenario
 
 IDLE_TURN_S = 2e-3
 LATE_CYCLES = 10
+UNHEARD_S = 1.0
+"""Silence of the server [s] after which reports are not sent any more."""
 LEAVE_S = 1.2
 """Time [s] that a controlled stop may take when the process ends."""
 
@@ -160,6 +162,8 @@ class RigLoop:
 
     def _report_when_due(self, conduct: Conduct) -> None:
         now = self._clock()
+        if self._watchdogs.silent_s(WEB) >= UNHEARD_S:
+            return  # nobody takes them: a full pipe would hold the loop up
         changed = conduct.state != self._reported or len(conduct.latch) != self._faults_reported
         if changed or now >= self._next_report_s:
             self._reported, self._faults_reported = conduct.state, len(conduct.latch)
@@ -183,7 +187,8 @@ class RigLoop:
         conduct, self._conduct = self._conduct, None
         if conduct is not None:
             on = conduct.on
-            leave(on.rig, on.motor_torque, on.stiffness_torque, lambda: self._pacer.wait(on.period_s))
+            loaded = conduct.stopping is not None and conduct.stopping.holding
+            leave(on.rig, on.motor_torque, on.stiffness_torque, lambda: self._pacer.wait(on.period_s), loaded=loaded)
         if self._disconnect is not None:
             self._pipe.report(Done(self._disconnect, 0.0))
         self._pipe.send()

@@ -28,7 +28,8 @@ def rig_of(file: RigFile, scenario: Scenario) -> Rig:
 
 def run_rig_process(ring_name: str, flag_name: str, beats_name: str, epoch: int, pipe: Connection) -> None:
     """Turn the loop of a rig until `pipe` closes, Disconnect or SIGTERM; the rig is stopped, disabled and closed first."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is the web process's to handle
+    for number in (signal.SIGINT, signal.SIGHUP):  # Ctrl+C is the web process's to handle
+        signal.signal(number, signal.SIG_IGN)
     compile_first()
     from backend.loop.messages import Ready
     from backend.loop.rig_loop import RigLoop
@@ -36,7 +37,12 @@ def run_rig_process(ring_name: str, flag_name: str, beats_name: str, epoch: int,
     ring, flag, beats = RingWriter(ring_name), StopFlag(flag_name), Beats(beats_name)
     loop = RigLoop(ring, flag, beats, pipe, rig_of)
     loop.epoch = epoch
-    signal.signal(signal.SIGTERM, lambda number, frame: loop.end())
+    for number in (
+        signal.SIGTERM,
+        signal.SIGHUP,
+        signal.SIGQUIT,
+    ):  # also the end of a terminal is no reason to drop a load
+        signal.signal(number, lambda number, frame: loop.end())
     ring.header[REAL_TIME] = settle_down()
     pipe.send(Ready())
     loop.run()

@@ -8,7 +8,7 @@ controlled any more is left to its drive's own quick stop.
 from typing import NamedTuple
 
 from backend.loop.axes import Axes
-from backend.rigs.rig import Axis
+from backend.rigs.rig import AXES, Axis
 
 BRAKES_S, RAMP_S = 0.6, 0.05
 SLOW_RAD_S, SLOW_S = 0.02, 0.02
@@ -23,7 +23,7 @@ LONGEST_S = 2.5
 
 
 class Moment(NamedTuple):
-    """What a stop looks at in one cycle."""
+    """What a stop looks at in one cycle; a spring torque [N m] that nobody knows is NaN."""
 
     now: float
     motor_speed: float
@@ -49,8 +49,9 @@ class Stopping:
         self._unloaded_since: float | None = None
         self._left_s: dict[Axis, float] = {}  # since when an axis is left to its drive
         self._motor_off_s: float | None = None
-        for axis in ("motor", "stiffness"):
-            if not axes.enabled(axis):
+        self._watch_drives(now)
+        for axis in AXES:
+            if not axes.enabled(axis) and axis not in self._left_s:
                 axes.disarm(axis)
 
     def leave_to_drive(self, axis: Axis, now: float) -> None:
@@ -59,16 +60,38 @@ class Stopping:
             self._left_s[axis] = now
             self._axes.stop(axis)
 
+    def _watch_drives(self, now: float) -> None:
+        """Let a drive go on that has begun to stop its axis by itself, as after a silence of this computer."""
+        for axis in AXES:
+            if self._axes.status[axis].state == "stopping":
+                self.leave_to_drive(axis, now)
+
     def step(self, moment: Moment) -> Course:
         """Go on by one cycle and return what it asks for."""
         now = moment.now
-        for axis in [axis for axis, since in self._left_s.items() if now - since >= QUICK_STOP_S]:
-            del self._left_s[axis]
-            self._axes.disarm(axis)
+        self._watch_drives(now)
+        if now - self._left_s.get("motor", now) >= QUICK_STOP_S:
+            del self._left_s["motor"]
+            self._axes.disarm("motor")
         brakes, share = self._brake(moment)
         if self._motor_off_s is None and not self._axes.on("motor") and "motor" not in self._left_s:
             self._motor_off_s = now
-        return Course(brakes, share, self._hold(moment))
+        unloaded = self._unloaded(moment)
+        if unloaded and now - self._left_s.get("stiffness", now) >= QUICK_STOP_S:
+            del self._left_s["stiffness"]
+            self._axes.disarm("stiffness")
+        if unloaded and self._axes.enabled("stiffness"):
+            self._axes.disarm("stiffness")
+        return Course(brakes, share, self._axes.enabled("stiffness"))
+
+    def _unloaded(self, moment: Moment) -> bool:
+        """Return whether the motor is off and the spring has been known to carry nothing for a while."""
+        if not abs(moment.spring_torque) <= UNLOADED_NM:  # not a number: nobody knows
+            self._unloaded_since = None
+        elif self._unloaded_since is None:
+            self._unloaded_since = moment.now
+        since = self._unloaded_since
+        return self._motor_off_s is not None and since is not None and moment.now - since >= UNLOADED_S
 
     def _brake(self, moment: Moment) -> tuple[bool, float]:
         if not self._axes.enabled("motor"):
@@ -86,23 +109,10 @@ class Stopping:
             self._axes.disarm("motor")
         return share > 0.0, share
 
-    def _hold(self, moment: Moment) -> bool:
-        if not self._axes.enabled("stiffness"):
-            return False
-        if abs(moment.spring_torque) > UNLOADED_NM:
-            self._unloaded_since = None
-        elif self._unloaded_since is None:
-            self._unloaded_since = moment.now
-        unloaded = self._unloaded_since is not None and moment.now - self._unloaded_since >= UNLOADED_S
-        if self._motor_off_s is not None and unloaded:
-            self._axes.disarm("stiffness")
-            return False
-        return True
-
     @property
     def holding(self) -> bool:
-        """Whether the stiffness axis holds."""
-        return self._axes.enabled("stiffness")
+        """Whether the stiffness axis holds, by the loop or by its drive."""
+        return self._axes.enabled("stiffness") or "stiffness" in self._left_s
 
     @property
     def off(self) -> bool:

@@ -46,8 +46,8 @@ def test_the_emulated_rig_is_homed_armed_and_follows(bench: EmulatedBench) -> No
 FAULTS = [
     ("frames_dropped", 0.5, None, 0.1, {1, 2, 3, 4}),
     ("frames_delayed", 30.0, None, 0.1, {1, 2, 3, 4}),
-    ("frames_corrupted", 0.2, None, 1.0, set(range(1, 32))),
-    ("encoder_frozen", None, 1, 1.0, {31, 18, 13, 15, 16}),
+    ("frames_corrupted", 0.2, None, 1.0, set(range(1, 35))),
+    ("encoder_frozen", None, 1, 1.0, {32, 31, 18, 13, 15, 16}),
     ("encoder_frozen", None, 3, 0.2, {11}),
     ("encoder_jump", 0.1, 1, 0.01, {9}),
     ("encoder_jump", 5.0, 2, 0.01, {10}),
@@ -62,8 +62,8 @@ FAULTS = [
     ("node_reboot", None, 2, 0.02, {3, 19, 21}),
     ("node_reboot", None, 3, 0.02, {4, 21}),
     ("torque_saturated", 0.1, 1, 1.0, {23}),
-    ("wrong_inertia", 5.0, None, 3.0, {13, 15, 16, 18, 31}),
-    ("end_stop", None, None, 0.5, {17}),
+    ("wrong_inertia", 5.0, None, 3.0, {13, 15, 16, 18, 31, 34}),
+    ("end_stop", None, None, 0.5, {17, 33}),
 ]
 
 

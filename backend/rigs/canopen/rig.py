@@ -187,7 +187,8 @@ class CanopenRig:
     def _disable(self) -> None:
         if self._cycle is not None:
             for axis in AXES:
-                self.disarm(axis)
+                if self.axis(axis).state != "stopping":  # a drive that holds a load by its quick stop goes on with it
+                    self.disarm(axis)
             for _ in range(CLOSING_CYCLES):
                 self.exchange(0.0, 0.0)
 
@@ -195,8 +196,10 @@ class CanopenRig:
         if self._parts is None:
             return
         channels = {"motor": self._parts.motor, "stiffness": self._parts.stiffness}
-        if place.axis is not None and channels[place.axis].age < CLOSING_CYCLES:
-            unwatch(node)
+        if place.axis is not None:
+            channel = channels[place.axis]
+            if channel.age < CLOSING_CYCLES and channel.status().state in ("disabled", "fault"):
+                unwatch(node)  # else its watch of us is what stops it
         node.manage("PRE-OPERATIONAL")
 
     def _shut(self) -> None:
