@@ -135,7 +135,7 @@ class RigFile(Part):
     actuator: str | None = Field(None, description="Name in the actuator library; null = the default actuator.")
     preset: str | None = Field(None, description="Preset to begin with; null = the tuning in force, if it fits.")
     rate_hz: Literal[200, 250, 500, 1000] = Field(
-        500, description="Cycles a second; 500 on CAN, 250 on a USB serial adapter."
+        500, description="Cycles a second: 200, 250, 500 or 1000; 500 on CAN, 250 on a USB serial adapter."
     )
     answer_share: float = Field(
         0.6, gt=0.1, lt=0.95, description="Share of a cycle in which the answers must be there."

@@ -59,7 +59,7 @@ class RigCommands:
     async def go_to(self, asked: Going, by: str) -> Message:
         """Move the link to a position."""
         check_move(self._limits(), asked.position, asked.speed)
-        words = f"going to {asked.position:.3f} rad within {asked.speed:.2f} rad/s"
+        words = f"going to {asked.position:.3f} rad at up to {asked.speed:.2f} rad/s"
         return await self._do(messages.GoTo(asked.position, asked.speed), by, words, "Cannot go there")
 
     async def jog(self, asked: Jogging, by: str) -> Message:
