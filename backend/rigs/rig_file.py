@@ -3,8 +3,6 @@
 TOML, read whole and checked before anything is opened; docs/rig-file.md lists every field, `vssea rig example` writes one.
 """
 
-import tomllib
-from pathlib import Path
 from typing import Literal, Self
 
 from pydantic import Field, JsonValue, model_validator
@@ -153,8 +151,3 @@ class RigFile(Part):
         if len(set(nodes)) < len(nodes):
             raise ValueError(f"nodes {', '.join(map(str, nodes))} are not all different; give each its own number")
         return self
-
-
-def read_rig_file(path: Path) -> RigFile:
-    """Return the rig of a file. Raises OSError, tomllib.TOMLDecodeError or pydantic.ValidationError."""
-    return RigFile.model_validate(tomllib.loads(path.read_text("utf-8")))
