@@ -3,12 +3,13 @@
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from pydantic import ValidationError
 
 from backend.emulator.commands import emulator
+from backend.refusal import refuse
 from backend.rigs.commands import rig
 
 if TYPE_CHECKING:
@@ -28,9 +29,9 @@ def _settings(**given: Any) -> "Settings":
         return Settings(**{name: value for name, value in given.items() if value is not None})
     except ValidationError as error:
         first = error.errors()[0]
-        _refuse(f"{'.'.join(map(str, first['loc']))} {first['msg'].removeprefix('Value error, ')}".strip())
+        refuse(f"{'.'.join(map(str, first['loc']))} {first['msg'].removeprefix('Value error, ')}".strip())
     except SettingsError as error:
-        _refuse(f'{error}; expected JSON, such as ["my-host"]')
+        refuse(f'{error}; expected JSON, such as ["my-host"]')
 
 
 @app.command()
@@ -48,7 +49,7 @@ def serve(
     try:
         application = create_app(settings)
     except OSError as error:
-        _refuse(f"{settings.data_dir} cannot be the data folder: {error}; set VSSEA_DATA_DIR to a folder of your own")
+        refuse(f"{settings.data_dir} cannot be the data folder: {error}; set VSSEA_DATA_DIR to a folder of your own")
     shown = f"[{settings.host}]" if ":" in settings.host else settings.host
     typer.echo(f"VSSEA on http://{shown}:{settings.port}/  (Ctrl+C ends it)")
     uvicorn.run(
@@ -77,15 +78,15 @@ def simulate(
     forms = {".csv": "csv", ".json": "json", ".bin": "binary"}
     form = forms.get(output.suffix, "") if output else "none"
     if not form:
-        _refuse(f"{output} cannot be written: expected a name ending in {', '.join(forms)}")
+        refuse(f"{output} cannot be written: expected a name ending in {', '.join(forms)}")
     try:
         scenario = SCENARIOS[file] if file in SCENARIOS else Scenario.model_validate_json(_read(file))
         _, content = simulate_scenario(scenario, form, every, allow_unstable)
         figures = content if form == "none" else simulate_scenario(scenario, "none", 1, True)[1]
     except ValidationError as error:
-        _refuse(from_validation(error, Scenario).detail)
+        refuse(from_validation(error, Scenario).detail)
     except ValueError as refusal:
-        _refuse(str(refusal))
+        refuse(str(refusal))
     if output:
         _write(output, content)
     typer.echo(json.dumps(json.loads(figures), indent=2, ensure_ascii=False))
@@ -107,13 +108,13 @@ def export(
     try:
         files = export_all(SCENARIOS[file] if file in SCENARIOS else Scenario.model_validate_json(_read(file)))
     except ValidationError as error:
-        _refuse(from_validation(error, Scenario).detail)
+        refuse(from_validation(error, Scenario).detail)
     except ValueError as refusal:
-        _refuse(str(refusal))
+        refuse(str(refusal))
     try:
         output.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        _refuse(f"{output} cannot be made: {error}")
+        refuse(f"{output} cannot be made: {error}")
     for name, content in files.items():
         _write(output / name, content)
         typer.echo(output / name)
@@ -137,7 +138,7 @@ def paper(
     try:
         report = with_progress(lambda tell: paper_report(str(output), tell))
     except OSError as error:
-        _refuse(f"{output} cannot be written: {error}; expected a folder of your own")
+        refuse(f"{output} cannot be written: {error}; expected a folder of your own")
     Console().print(claims_shown(report))
     typer.echo(f"{report['statement']}\n{output / 'index.html'}")
     if not report["passed"]:
@@ -161,9 +162,9 @@ def report(
     try:
         page = report_page(Recording(path))
     except OSError as error:
-        _refuse(f"{path} cannot be read: {error.strerror}; expected an .mcap file or a recording's id")
+        refuse(f"{path} cannot be read: {error.strerror}; expected an .mcap file or a recording's id")
     except ValueError as refusal:
-        _refuse(str(refusal))
+        refuse(str(refusal))
     target = output or Path(f"{path.stem}-report.html")
     _write(target, page.encode())
     typer.echo(target)
@@ -173,19 +174,14 @@ def _read(file: str) -> str:
     try:
         return sys.stdin.read() if file == "-" else Path(file).read_text("utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        _refuse(f"{file} cannot be read: {error}; expected a scenario's file or name (nominal, realistic, paper_fig2)")
+        refuse(f"{file} cannot be read: {error}; expected a scenario's file or name (nominal, realistic, paper_fig2)")
 
 
 def _write(file: Path, content: bytes) -> None:
     try:
         file.write_bytes(content)
     except OSError as error:
-        _refuse(f"{file} cannot be written: {error}")
-
-
-def _refuse(sentence: str) -> NoReturn:
-    typer.echo(f"vssea: {sentence}", err=True)
-    raise typer.Exit(2)
+        refuse(f"{file} cannot be written: {error}")
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ def rig_routes(session: Session, pool: Pool, library: RigLibrary) -> APIRouter:
 
     @router.get("/rigs")
     async def listed() -> Document:
-        """Return all rigs: the built-in one, and those in the data folder."""
+        """Return all rigs: the built-in ones, and those in the data folder."""
         return {"rigs": [entry.document() for entry in await asyncio.to_thread(library.list)]}
 
     @router.get("/rigs/{name}")
@@ -44,7 +44,7 @@ def rig_routes(session: Session, pool: Pool, library: RigLibrary) -> APIRouter:
 
     @router.delete("/rigs/{name}", status_code=204)
     async def delete(name: str, by: By) -> Response:
-        """Delete a rig's file; the built-in one stays."""
+        """Delete a rig's file; the built-in ones stay."""
         _refuse_connected(session, name, "deleted")
         await asyncio.to_thread(library.delete, name)
         session.note("rig", f"file of rig {name} deleted", by)

@@ -5,10 +5,8 @@ from typing import Any
 from backend.emulator.emulator import Emulator
 from backend.emulator.faults import FAULTS, Faults, RefusedRequest, load
 
-VALUES = ("value", "share", "ms", "rad", "code", "factor", "torque")
-"""Names under which a fault's value may come."""
-KEYS = ("do", "name", "node", "axis", "which", *VALUES)
-"""What a request may say; `axis` or `which` is motor, stiffness or link, another name for a node."""
+KEYS = ("do", "name", "node", "axis", "value")
+"""What a request may say; `axis` is motor, stiffness or link, another name for a node."""
 AXIS_NODES = {"motor": 1, "stiffness": 2, "link": 3}
 
 
@@ -48,18 +46,17 @@ def _done(emulator: Emulator, faults: Faults, request: dict[str, Any]) -> dict[s
 
 
 def _value(request: dict[str, Any]) -> float | None:
-    for name in VALUES:
-        value = request.get(name)
-        if value is not None:
-            try:
-                return float(int(value, 0)) if isinstance(value, str) else float(value)
-            except (TypeError, ValueError) as error:
-                raise RefusedRequest(f"{name} {value!r} is no number") from error
-    return None
+    value = request.get("value")
+    if value is None:
+        return None
+    try:
+        return float(int(value, 0)) if isinstance(value, str) else float(value)
+    except (TypeError, ValueError) as error:
+        raise RefusedRequest(f"value {value!r} is no number") from error
 
 
 def _node(request: dict[str, Any]) -> int | None:
-    node, axis = request.get("node"), request.get("axis", request.get("which"))
+    node, axis = request.get("node"), request.get("axis")
     if axis is not None:
         if axis not in AXIS_NODES:
             raise RefusedRequest(f"there is no axis {axis!r}; expected motor, stiffness or link")

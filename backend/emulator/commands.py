@@ -2,12 +2,14 @@
 
 import json
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any
 
 import typer
 
+from backend.emulator.control_port import PORT, ask
+from backend.refusal import refuse
+
 emulator = typer.Typer(invoke_without_command=True, help="Run a whole emulated rig on a CAN bus of its own.")
-PORT = 29536
 
 
 @emulator.callback()
@@ -39,7 +41,7 @@ def run(
         hint = (
             "is an emulator running there already" if interface == "socketcand" else "does `ip link` list the channel"
         )
-        _refuse(f"{interface} {where} cannot be opened: {error}; {hint}?")
+        refuse(f"{interface} {where} cannot be opened: {error}; {hint}?")
 
 
 @emulator.command()
@@ -95,14 +97,12 @@ def faults() -> None:
 
 
 def _show(context: typer.Context, request: dict[str, Any]) -> None:
-    from backend.emulator.control_port import ask
-
     try:
         reply = ask(context.obj + 1, {key: value for key, value in request.items() if value is not None})
     except (OSError, ValueError) as error:
-        _refuse(f"no emulator answers on 127.0.0.1:{context.obj}: {error}; start one with: vssea emulator")
+        refuse(f"no emulator answers on 127.0.0.1:{context.obj}: {error}; start one with: vssea emulator")
     if "error" in reply:
-        _refuse(reply["error"])
+        refuse(reply["error"])
     typer.echo(json.dumps(reply, indent=2, ensure_ascii=False))
 
 
@@ -117,9 +117,9 @@ def _actuator(file: Path | None) -> Any:
         return Actuator.model_validate_json(file.read_text("utf-8"))
     except ValidationError as error:
         first = error.errors()[0]
-        _refuse(f"{file}: {'.'.join(map(str, first['loc']))} {first['msg'].removeprefix('Value error, ')}")
+        refuse(f"{file}: {'.'.join(map(str, first['loc']))} {first['msg'].removeprefix('Value error, ')}")
     except (OSError, UnicodeDecodeError) as error:
-        _refuse(f"{file} cannot be read: {error}; expected an actuator as JSON")
+        refuse(f"{file} cannot be read: {error}; expected an actuator as JSON")
 
 
 def _stiffness(stiffness: float, actuator: Any) -> float:
@@ -127,13 +127,8 @@ def _stiffness(stiffness: float, actuator: Any) -> float:
 
     mechanism = (actuator or Actuator()).stiffness
     if not mechanism.softest <= stiffness <= mechanism.stiffest:
-        _refuse(
+        refuse(
             f"stiffness {stiffness:g} N·m/rad is not between its stops; "
             f"expected {mechanism.softest:g} to {mechanism.stiffest:g}"
         )
     return stiffness
-
-
-def _refuse(sentence: str) -> NoReturn:
-    typer.echo(f"vssea: {sentence}", err=True)
-    raise typer.Exit(2)

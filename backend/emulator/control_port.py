@@ -7,6 +7,8 @@ from collections.abc import Callable
 from typing import Any
 
 Answer = Callable[[dict[str, Any]], dict[str, Any]]
+PORT = 29536
+"""Of the bus, unless another one is asked for; the control port is the next."""
 LONGEST = 65536  # bytes of a request
 
 

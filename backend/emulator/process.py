@@ -15,7 +15,7 @@ from filelock import FileLock
 
 from backend.emulator.answers import answer
 from backend.emulator.can_interface import CanInterface
-from backend.emulator.control_port import ControlPort
+from backend.emulator.control_port import PORT, ControlPort
 from backend.emulator.emulator import Emulator
 from backend.emulator.faults import Faults
 from backend.emulator.plant import DEFAULT_STIFFNESS, EmulatedPlant, default_actuator
@@ -24,7 +24,6 @@ from backend.processes import ask_for_real_time
 from vssea_core.actuator.parameters import Actuator
 from vssea_core.compiled import cache_folder
 
-PORT = 29536
 TRIES = 20
 """Pairs of free ports that are looked for where any will do."""
 

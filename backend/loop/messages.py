@@ -19,6 +19,9 @@ State = Literal[
 """A simulated session is starting, ready, running, paused, stopped or at fault. A rig is connected (not homed), homing, ready
 (homed, drives off), armed (holding), running (moving), stopping (braking), stopped or at fault."""
 
+JOG_LASTS_S = 0.3
+"""A jog ends this long after its renewal was sent."""
+
 
 @dataclass(frozen=True)
 class Load:

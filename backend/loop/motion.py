@@ -4,15 +4,13 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-from backend.loop.messages import Moved
+from backend.loop.messages import JOG_LASTS_S, Moved
 from backend.rigs.rig_file import Limits
 from vssea_core.control.law import Target
 from vssea_core.scenario import Scenario
 from vssea_core.signals.documents import ConstantStiffness, JogReference, MoveReference, Reference, StiffnessReference
 from vssea_core.signals.references import TRANSITION_SIZE, change_reference, reference_row
 
-JOG_LASTS_S = 0.3
-"""A jog ends this long after its renewal was sent."""
 STIFFNESS_STEP_S = 0.02
 """A jogged stiffness is commanded anew this often; the reference filter behind it makes it smooth."""
 NEAR_ENOUGH = 0.2

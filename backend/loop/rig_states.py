@@ -33,13 +33,13 @@ ALLOWED: dict[type[Command], frozenset[State]] = {
 
 WHAT: dict[type[Command], str] = {
     messages.Connect: "this session is connected already",
-    messages.Home: "a rig is homed when it is connected or ready",
-    messages.Arm: "a rig is armed when it is ready",
+    messages.Home: "a rig can be homed only when it is connected or ready",
+    messages.Arm: "a rig can be armed only when it is ready",
     messages.Disarm: "only an armed rig can be disarmed",
-    messages.Follow: "a reference is followed from armed",
+    messages.Follow: "a rig can follow a reference only when it is armed",
     messages.Hold: "only a moving rig can be told to hold",
     messages.Jog: "only an armed rig can be jogged",
-    messages.GoTo: "a position is gone to from armed",
+    messages.GoTo: "a rig can go to a position only when it is armed",
     messages.Reset: "only a stopped rig or one at fault can be reset",
 }
 WAY_ON: dict[State, str] = {

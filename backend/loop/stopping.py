@@ -1,4 +1,4 @@
-"""The controlled stop of a rig whose spring stores energy, safety point 6, and what is left of it afterwards.
+"""The controlled stop of a rig whose spring stores energy (decision 15), and what is left of it afterwards.
 
 The motor is braked by damping while the stiffness axis holds; when it is slow, or after 0.6 s, its torque goes to zero within
 50 ms and the motor is disabled. The stiffness axis goes on holding for as long as the spring is loaded. An axis that cannot be

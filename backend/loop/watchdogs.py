@@ -3,9 +3,8 @@
 from collections.abc import Callable
 
 from backend.rigs.faults import LEASE_EXPIRED, WEB_SILENT, Fault
-from backend.telemetry.beats import LEASE, WEB, Beats
+from backend.telemetry.beats import LEASE, LEASE_S, WEB, Beats
 
-LEASE_S = 0.4
 WEB_S = 0.25
 
 

@@ -1,9 +1,11 @@
 """The commands `vssea rig ...`: look at a rig without moving it, and write an example of a rig's file."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from backend.refusal import refuse
 
 if TYPE_CHECKING:
     from backend.rigs.rig_file import RigFile
@@ -63,13 +65,8 @@ def _rig_file(which: str) -> "RigFile":
             return rig_file_of(path.read_text("utf-8"))
         return RigLibrary(Settings().data_dir / FOLDER).file(which)
     except (OSError, UnicodeDecodeError) as error:
-        _refuse(f"{which} cannot be read: {error}; expected a rig's TOML file or a name")
+        refuse(f"{which} cannot be read: {error}; expected a rig's TOML file or a name")
     except Problem as problem:
-        _refuse(problem.detail)
+        refuse(problem.detail)
     except ValueError as error:  # of the settings
-        _refuse(str(error))
-
-
-def _refuse(sentence: str) -> NoReturn:
-    typer.echo(f"vssea: {sentence}", err=True)
-    raise typer.Exit(2)
+        refuse(str(error))

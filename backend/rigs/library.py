@@ -115,7 +115,7 @@ class RigLibrary:
         return RigEntry(name, False, text, file)
 
     def delete(self, name: str) -> None:
-        """Delete a rig's file. Raises Problem where there is none, or it is the built-in one."""
+        """Delete a rig's file. Raises Problem where there is none, or it is a built-in one."""
         _refuse_builtin(name, "deleted")
         self.get(name)
         try:

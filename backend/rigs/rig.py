@@ -67,7 +67,7 @@ class RigError(Exception):
 
     def __init__(self, fault: Fault, detail: str = "") -> None:
         self.fault, self.detail = fault, detail
-        super().__init__(f"{fault.sentence(detail)}")
+        super().__init__(fault.sentence(detail))
 
 
 class Rig(Protocol):

@@ -3,8 +3,6 @@
 TOML, read whole and checked before anything is opened; docs/rig-file.md lists every field, `vssea rig example` writes one.
 """
 
-import tomllib
-from pathlib import Path
 from typing import Literal, Self
 
 from pydantic import Field, JsonValue, model_validator
@@ -135,7 +133,7 @@ class RigFile(Part):
     actuator: str | None = Field(None, description="Name in the actuator library; null = the default actuator.")
     preset: str | None = Field(None, description="Preset to begin with; null = the tuning in force, if it fits.")
     rate_hz: Literal[200, 250, 500, 1000] = Field(
-        500, description="Cycles a second; 500 on CAN, 250 on a USB serial adapter."
+        500, description="Cycles a second: 200, 250, 500 or 1000; 500 on CAN, 250 on a USB serial adapter."
     )
     answer_share: float = Field(
         0.6, gt=0.1, lt=0.95, description="Share of a cycle in which the answers must be there."
@@ -153,8 +151,3 @@ class RigFile(Part):
         if len(set(nodes)) < len(nodes):
             raise ValueError(f"nodes {', '.join(map(str, nodes))} are not all different; give each its own number")
         return self
-
-
-def read_rig_file(path: Path) -> RigFile:
-    """Return the rig of a file. Raises OSError, tomllib.TOMLDecodeError or pydantic.ValidationError."""
-    return RigFile.model_validate(tomllib.loads(path.read_text("utf-8")))

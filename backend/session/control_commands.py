@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 from backend.problem import Problem
 from backend.session.arguments import Nothing
 from backend.session.heartbeat import Heartbeat
-from backend.session.operator_lease import LEASE_S, LONGEST_LEASE_S, OperatorLease, Party
+from backend.session.operator_lease import LONGEST_LEASE_S, OperatorLease, Party
 from backend.session.rig_arguments import Handing, TakingControl
+from backend.telemetry.beats import LEASE_S
 
 if TYPE_CHECKING:
     from backend.session.session import Session

@@ -3,10 +3,10 @@
 from collections.abc import Callable
 
 from backend.loop.messages import State
+from backend.loop.rig_states import CLOSED
 from vssea_core.control.tuning import Tuning
 
 PROVED_S = 5.0
-CLOSED: tuple[State, ...] = ("armed", "running")
 
 
 class GoodTuning:

@@ -2,8 +2,8 @@
 
 import asyncio
 
-from backend.session.operator_lease import LEASE_S, OperatorLease
-from backend.telemetry.beats import LEASE, WEB, Beats
+from backend.session.operator_lease import OperatorLease
+from backend.telemetry.beats import LEASE, LEASE_S, WEB, Beats
 
 BEAT_S = 0.05
 

@@ -5,9 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from backend.problem import Problem
+from backend.telemetry.beats import LEASE_S
 
-LEASE_S = 0.4
-"""So long a page that is silent stays in control; it renews every 100 ms."""
 LONGEST_LEASE_S = 5.0
 """A caller without a websocket may ask for as much."""
 

@@ -5,7 +5,8 @@ from typing import Any
 from pydantic import Field
 
 from backend.session.arguments import Arguments
-from backend.session.operator_lease import LEASE_S, LONGEST_LEASE_S
+from backend.session.operator_lease import LONGEST_LEASE_S
+from backend.telemetry.beats import LEASE_S
 
 
 class RigName(Arguments):

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 Message = dict[str, Any]
 LONG_LIMIT_S = 30.0
 """For commands that wait for the drives."""
-JOGGED_S = 0.3
 REFUSED = 422
 
 
@@ -28,7 +27,7 @@ class RigCommands:
 
     def __init__(self, session: "Session", clock: Callable[[], float]) -> None:
         self._session, self._clock = session, clock
-        self._jogging: tuple[str, float] | None = None
+        self._jogged_s: float | None = None  # when the jog was last renewed
         self._checked: set[tuple[int, float]] = set()
 
     async def home(self, _: Nothing, by: str) -> Message:
@@ -59,7 +58,7 @@ class RigCommands:
     async def go_to(self, asked: Going, by: str) -> Message:
         """Move the link to a position."""
         check_move(self._limits(), asked.position, asked.speed)
-        words = f"going to {asked.position:.3f} rad within {asked.speed:.2f} rad/s"
+        words = f"going to {asked.position:.3f} rad at up to {asked.speed:.2f} rad/s"
         return await self._do(messages.GoTo(asked.position, asked.speed), by, words, "Cannot go there")
 
     async def jog(self, asked: Jogging, by: str) -> Message:
@@ -69,7 +68,7 @@ class RigCommands:
         if asked.stiffness:
             await self._check_tuning(limits.stiffness_high if asked.stiffness > 0.0 else limits.stiffness_low)
         now = self._clock()
-        goes_on = self._jogging is not None and now - self._jogging[1] <= JOGGED_S
+        goes_on = self._jogged_s is not None and now - self._jogged_s <= messages.JOG_LASTS_S
         moving = not asked.harmless
         command = messages.Jog(asked.link, asked.stiffness, now)
         done = await self._told("Cannot jog", command, by if moving else None)
@@ -77,7 +76,7 @@ class RigCommands:
             self._note(f"jogging: {_jog_words(asked)}", by)
         elif goes_on and not moving:
             self._note("jog let go", by)
-        self._jogging = (by, now) if moving else None
+        self._jogged_s = now if moving else None
         return {"time_s": done.time_s}
 
     async def _check_tuning(self, stiffness: float) -> None:
@@ -99,9 +98,9 @@ class RigCommands:
 
     async def let_go(self) -> None:
         """End a jog whose page has closed; the control process would by itself, a moment later."""
-        if self._jogging is None or not self._session.rig.connected:
+        if self._jogged_s is None or not self._session.rig.connected:
             return
-        self._jogging = None
+        self._jogged_s = None
         try:
             await self._session.link.command(messages.Jog(0.0, 0.0, self._clock()))
         except Problem as problem:
@@ -129,7 +128,7 @@ class RigCommands:
         self._note("reset", by)
 
     async def _do(self, command: messages.Command, by: str, words: str, title: str) -> Message:
-        self._jogging = None
+        self._jogged_s = None
         done = await self._told(title, command, by)
         self._note(words, by)
         return {"time_s": done.time_s}

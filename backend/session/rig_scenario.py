@@ -29,12 +29,6 @@ def rig_scenario(rig: RigFile, actuator: Actuator, tuning: Tuning, stiffness: fl
             f"The limits of rig {rig.name} are {limits.stiffness_low:g} to {limits.stiffness_high:g} N·m/rad, and its actuator "
             f"has end stops at {mechanism.softest:g} and {mechanism.stiffest:g} N·m/rad; narrow the limits in its file."
         )
-    longest_s = next(part.le for part in Timing.model_fields["sample_time_s"].metadata if hasattr(part, "le"))
-    if 1.0 / rig.rate_hz > longest_s:
-        raise refused(
-            f"Rig {rig.name} asks for {rig.rate_hz} cycles a second; the controller needs {1.0 / longest_s:g} at least, so "
-            "raise rate_hz in its file."
-        )
     return Scenario(
         name=f"rig {rig.name}",
         description=rig.note,

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from backend.compute.pool import Pool
 from backend.loop.messages import Changed, Moved, RigReport, State
+from backend.loop.rig_states import DRIVEN
 from backend.rigs.rig_file import RigFile
 from backend.session.control_commands import ControlCommands
 from backend.session.fault_excerpt import FaultExcerpts
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
     from backend.session.session import Session
 
 Message = dict[str, Any]
-CLOSED: tuple[State, ...] = ("homing", "armed", "running", "stopping")
-"""States in which a rig is under torque."""
 
 
 class RigSession:
@@ -115,7 +114,7 @@ class RigSession:
         self.cores.give_back()
 
     def _keep_core(self, state: State) -> None:
-        if self.connected and state in CLOSED:
+        if self.connected and state in DRIVEN:
             self.cores.keep()
         else:
             self.cores.give_back()

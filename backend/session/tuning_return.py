@@ -26,6 +26,8 @@ async def return_to_good(session: "Session", good: GoodTuning) -> None:
         session.note("tuning", f"the last good tuning is not back: {problem.detail}", "session", "warning")
         return
     session.note(
-        "tuning", f"back to the last tuning that ran {PROVED_S:g} s without a fault; Reset when its cause is gone",
-        "session", "warning",
-    )  # fmt: skip
+        "tuning",
+        f"back to the last tuning that ran {PROVED_S:g} s without a fault; Reset when the cause of the fault is gone",
+        "session",
+        "warning",
+    )

@@ -6,6 +6,8 @@ import numpy as np
 
 WEB, LEASE = 0, 1
 """The web process itself (every 50 ms), and the operator's page through it (each renewal of the lease)."""
+LEASE_S = 0.4
+"""So long a page that is silent stays in control; it renews every 100 ms."""
 
 
 class Beats:

@@ -45,11 +45,11 @@ BREAKAGES = (
     Breakage("frames dropped, half", _fault("frames_dropped", value=0.5)),
     Breakage("frames delayed 5 ms", _fault("frames_delayed", value=5.0)),
     Breakage("frames corrupted, 20 %", _fault("frames_corrupted", value=0.2)),
-    Breakage("link encoder frozen", _fault("encoder_frozen", which="link"), harmless=True),  # at rest nobody can tell
-    Breakage("motor encoder frozen", _fault("encoder_frozen", which="motor"), harmless=True),
-    Breakage("stiffness encoder frozen", _fault("encoder_frozen", which="stiffness"), harmless=True),
-    Breakage("link encoder jumps 0.3 rad", _fault("encoder_jump", which="link", value=0.3)),
-    Breakage("motor encoder jumps 0.3 rad", _fault("encoder_jump", which="motor", value=0.3)),
+    Breakage("link encoder frozen", _fault("encoder_frozen", axis="link"), harmless=True),  # at rest nobody can tell
+    Breakage("motor encoder frozen", _fault("encoder_frozen", axis="motor"), harmless=True),
+    Breakage("stiffness encoder frozen", _fault("encoder_frozen", axis="stiffness"), harmless=True),
+    Breakage("link encoder jumps 0.3 rad", _fault("encoder_jump", axis="link", value=0.3)),
+    Breakage("motor encoder jumps 0.3 rad", _fault("encoder_jump", axis="motor", value=0.3)),
     Breakage("motor drive fault", _fault("drive_fault", node=1, value=0x2310)),
     Breakage("stiffness drive fault", _fault("drive_fault", node=2, value=0x2310)),
     Breakage("over-temperature", _fault("over_temperature", node=1)),

@@ -11,20 +11,22 @@ from backend.loop import messages
 from backend.loop.messages import AxisReport, Changed, Done, LatchedFault, Moved, RigReport
 from backend.problem import Problem, refused
 from backend.rigs.faults import FAULTS
+from backend.rigs.library import rig_file_of
 from backend.rigs.rig import AXES, Identity
-from backend.rigs.rig_file import RigFile, read_rig_file
+from backend.rigs.rig_file import RigFile
 from backend.session.control_link import RIG_ENTRY
 from backend.session.control_reports import ControlReports
 from backend.session.session import Session
 from backend.telemetry.beats import LEASE, WEB, Beats
 from backend.telemetry.ring import EPOCH, PERIOD_S, RingWriter
 from tests.backend.session_bench import BenchLink, SessionBench, on_bench
+from tests.injected_clock import Clock
 from vssea_core.channels import INDEX
 from vssea_core.scenario import Scenario
 from vssea_core.scenarios import REALISTIC
 from vssea_core.signals.documents import ConstantStiffness, JogReference
 
-EMULATOR = read_rig_file(Path(__file__).parents[2] / "backend/rigs/emulator.toml")
+EMULATOR = rig_file_of((Path(__file__).parents[2] / "backend/rigs/emulator.toml").read_text("utf-8"))
 IDENTITY = Identity("emulated", "emulator", (("motor drive, node 1", "emulated drive"),))
 REPORT = RigReport(
     "emulated", False, None, "drives off", ("not homed",),
@@ -32,14 +34,6 @@ REPORT = RigReport(
     0, (), 0, 0, 0, 250.0, 0.0, IDENTITY,
 )  # fmt: skip
 HOLD = JogReference(velocity=0.0, acceleration=2.0)
-
-
-class Clock:
-    def __init__(self) -> None:
-        self.now = 100.0
-
-    def __call__(self) -> float:
-        return self.now
 
 
 class Shelf:

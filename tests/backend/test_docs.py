@@ -7,6 +7,7 @@ from pathlib import Path
 
 import httpx
 import pytest
+from typer.main import get_command
 from typer.testing import CliRunner
 
 from backend.cli import app
@@ -47,6 +48,27 @@ def test_every_setting_is_listed_with_its_option_default_and_meaning() -> None:
         if name not in ("data_dir", "database", "recordings_dir", "token"):
             shown = json.loads(default.strip("`")) if name not in ("host", "scenario") else default.strip("`")
             assert shown == (list(field.default) if isinstance(field.default, tuple) else field.default)
+
+
+COMMAND_LINES = [
+    (page.name, match[1].split("#")[0].strip())
+    for page in (DOCS.parent / "README.md", *sorted(DOCS.glob("*.md")))
+    for match in re.finditer(r"^    (?:\.venv/bin/)?vssea (.+)$", page.read_text("utf-8"), re.MULTILINE)
+]
+
+
+@pytest.mark.parametrize(("page", "line"), COMMAND_LINES)
+def test_every_command_line_that_is_shown_names_commands_and_options_that_exist(page: str, line: str) -> None:
+    words = line.split(">")[0].split()
+    command = get_command(app)
+    for word in words:
+        inner = getattr(command, "commands", None)
+        if inner is None or word.startswith("-"):
+            break
+        assert word in inner, f"{page}: there is no command {word} in vssea {line}"
+        command = inner[word]
+    options = {option for parameter in command.params for option in (*parameter.opts, *parameter.secondary_opts)}
+    assert {word.split("=")[0] for word in words if word.startswith("-")} <= options
 
 
 def test_every_command_is_in_the_protocol(http: httpx.Client) -> None:

@@ -6,7 +6,8 @@ import pytest
 
 from backend.loop import messages
 from backend.session.good_tuning import PROVED_S, GoodTuning
-from tests.backend.rig_bench import Clock, RigBench, at_rig
+from tests.backend.rig_bench import RigBench, at_rig
+from tests.injected_clock import Clock
 from vssea_core.control.tuning import PositionObserver, Tuning
 
 A, B = (Tuning(observer=PositionObserver(bandwidth=bandwidth)) for bandwidth in (80.0, 160.0))

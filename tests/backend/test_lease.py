@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 from backend.problem import Problem
 from backend.session.command_audit import CommandAudit
 from backend.session.heartbeat import Heartbeat
-from backend.session.operator_lease import LEASE_S, LONGEST_LEASE_S, OperatorLease, Party
-from backend.telemetry.beats import LEASE, WEB, Beats
-from tests.backend.rig_bench import Clock
+from backend.session.operator_lease import LONGEST_LEASE_S, OperatorLease, Party
+from backend.telemetry.beats import LEASE, LEASE_S, WEB, Beats
+from tests.injected_clock import Clock
 
 ONE, TWO = Party("key-1", "page 1"), Party("key-2", "page 2")
 CALLER = Party("key-3", "REST", LONGEST_LEASE_S)

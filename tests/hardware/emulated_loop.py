@@ -6,9 +6,10 @@ from backend.emulator.emulator import Emulator
 from backend.emulator.faults import Faults
 from backend.emulator.plant import default_actuator
 from backend.rigs.canopen import CanopenRig
-from tests.hardware.fake_bus import ANSWER_DELAY_S, Clock, FakeBus, frame
+from tests.hardware.fake_bus import ANSWER_DELAY_S, FakeBus, frame
 from tests.hardware.fake_rig import GEAR_RATIO, RIG_FILE
 from tests.hardware.rig_loop_bench import RigBench, T
+from tests.injected_clock import Clock
 from vssea_core.actuator.parameters import Timing
 from vssea_core.control.tuning import PositionObserver, StateFeedback, Tuning
 from vssea_core.scenarios import REALISTIC

@@ -7,15 +7,9 @@ from itertools import count
 
 import can
 
+from tests.injected_clock import Clock
+
 SDO_DELAY_S, ANSWER_DELAY_S = 2e-4, 3e-4
-
-
-class Clock:
-    def __init__(self) -> None:
-        self.now = 100.0
-
-    def __call__(self) -> float:
-        return self.now
 
 
 class FakeBus:

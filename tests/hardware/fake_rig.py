@@ -1,18 +1,19 @@
 """The emulator's rig file on the bus in memory."""
 
 from importlib.resources import files
-from pathlib import Path
 from typing import Any
 
 import can
 
 from backend.rigs.canopen import CanopenRig
 from backend.rigs.faults import Fault
+from backend.rigs.library import rig_file_of
 from backend.rigs.rig import Measured
-from backend.rigs.rig_file import Bus, RigFile, read_rig_file
-from tests.hardware.fake_bus import Clock, FakeBus, FakeDrive, FakeEncoder
+from backend.rigs.rig_file import Bus, RigFile
+from tests.hardware.fake_bus import FakeBus, FakeDrive, FakeEncoder
+from tests.injected_clock import Clock
 
-RIG_FILE = read_rig_file(Path(str(files("backend.rigs") / "emulator.toml")))
+RIG_FILE = rig_file_of((files("backend.rigs") / "emulator.toml").read_text("utf-8"))
 GEAR_RATIO = 100.0
 RATED_UNITS = {"motor": 533_000, "stiffness": 440_000}  # µN·m
 

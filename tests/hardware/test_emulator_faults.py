@@ -315,6 +315,7 @@ def test_what_cannot_be_is_refused_in_a_sentence_and_changes_nothing(
     "request_",
     [{}, {"do": "dance"}, {"do": "fault", "name": "drive_fault", "value": []}, {"do": "fault", "name": "drive_fault", "node": "x"},
      {"do": "fault", "name": "encoder_jump", "axis": "moon"}, {"do": "fault", "name": "encoder_jump", "where": "link"},
+     {"do": "fault", "name": "encoder_jump", "rad": 0.1}, {"do": "fault", "name": "encoder_frozen", "which": "link"},
      {"do": "load", "value": 1e4}],
 )  # fmt: skip
 def test_a_request_that_cannot_be_understood_is_answered_by_an_error(request_: dict[str, object]) -> None:
@@ -322,15 +323,15 @@ def test_a_request_that_cannot_be_understood_is_answered_by_an_error(request_: d
     assert set(answers.answer(bench.emulator, bench.faults, request_)) == {"error"}
 
 
-def test_a_value_may_come_by_its_own_name_and_in_hexadecimal() -> None:
+def test_a_value_may_be_hexadecimal_and_an_axis_stand_for_its_node() -> None:
     bench = Bench().enabled()
     reply = answers.answer(
-        bench.emulator, bench.faults, {"do": "fault", "name": "drive_fault", "code": "0x5113", "node": 2}
+        bench.emulator, bench.faults, {"do": "fault", "name": "drive_fault", "value": "0x5113", "node": 2}
     )
     assert reply["ok"]
     assert bench.emergencies(STIFFNESS) == [0x5113]
     assert answers.answer(
-        bench.emulator, bench.faults, {"do": "fault", "name": "encoder_jump", "rad": 0.1, "axis": "link"}
+        bench.emulator, bench.faults, {"do": "fault", "name": "encoder_jump", "value": 0.1, "axis": "link"}
     )["ok"]
     assert link(bench) == pytest.approx(0.1, abs=1e-3)
     assert bench.emulator.nodes[LINK - 1].number == LINK

@@ -6,7 +6,7 @@ import pytest
 
 from backend.loop.freshness import oldest, silence, stop_sentence
 from backend.loop.latch import Latch
-from backend.loop.watchdogs import LEASE_S, WEB_S, Watchdogs
+from backend.loop.watchdogs import WEB_S, Watchdogs
 from backend.rigs.faults import (
     BUS_SILENT,
     LEASE_EXPIRED,
@@ -19,15 +19,8 @@ from backend.rigs.faults import (
     Fault,
 )
 from backend.rigs.rig import Measured
-from backend.telemetry.beats import LEASE, WEB, Beats
-
-
-class Clock:
-    def __init__(self) -> None:
-        self.now = 100.0
-
-    def __call__(self) -> float:
-        return self.now
+from backend.telemetry.beats import LEASE, LEASE_S, WEB, Beats
+from tests.injected_clock import Clock
 
 
 @pytest.fixture

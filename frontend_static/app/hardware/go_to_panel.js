@@ -3,9 +3,7 @@ import { element, setText } from "../element.js";
 import { briefly } from "../quantity.js";
 import { RigPanel } from "./rig_panel.js";
 
-const MOVABLE = new Set(["armed", "running"]);
-
-/** Move the link to a position within a speed. */
+/** Move the link to a position, at up to a speed; from armed only. */
 export class GoToPanel {
   /** @param {object} desk {session, operator, actions, choices} */
   constructor({ session, operator, actions, choices }) {
@@ -20,7 +18,7 @@ export class GoToPanel {
     this.form = element(
       "form",
       { class: "go-to", novalidate: true },
-      element("div", { class: "rig-row" }, this.position.root, this.positionUnit, element("span", { class: "go-within" }, "within"), this.speed.root, this.speedUnit, this.button),
+      element("div", { class: "rig-row" }, this.position.root, this.positionUnit, element("span", { class: "go-within" }, "at up to"), this.speed.root, this.speedUnit, this.button),
     );
     this.form.addEventListener("submit", (event) => (event.preventDefault(), this.#go()));
     this.panel = new RigPanel("Go to", this.form, this.hint);
@@ -55,7 +53,7 @@ export class GoToPanel {
   #show() {
     const { operator, session, choices } = this;
     const { limits } = operator.rig;
-    const isPossible = operator.isOnRig && operator.mayChange && MOVABLE.has(session.snapshot?.state);
+    const isPossible = operator.isOnRig && operator.mayChange && session.snapshot?.state === "armed";
     for (const control of [this.position.root, this.speed.root, this.button]) control.disabled = !isPossible;
     if (limits && this.speed.root.value === "") this.speed.set(limits.jog_speed / 2);
     const { factor, unit } = choices.linkAngle;

@@ -1,4 +1,5 @@
 import { element, setText } from "../element.js";
+import { MOVABLE } from "../session/jog.js";
 import { RigPanel } from "./rig_panel.js";
 import { SpeedSlider } from "./speed_slider.js";
 
@@ -8,7 +9,6 @@ const WAYS = [
   { id: "right", key: "ArrowRight", text: "right", sign: "▶", part: "link", way: 1 },
   { id: "stiffer", key: "ArrowUp", text: "stiffer", sign: "▲", part: "stiffness", way: 1 },
 ];
-const MOVABLE = new Set(["armed", "running"]);
 
 /** Hold to move: by pointer on a button, or by the arrow keys while the pad has focus. Letting go stops, whatever way. */
 export class JogPad {

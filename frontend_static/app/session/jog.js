@@ -1,6 +1,7 @@
 const RENEW_MS = 100;
 const MOST_UNANSWERED = 3;
-const MOVABLE = new Set(["armed", "running"]);
+/** States in which a rig can be jogged. */
+export const MOVABLE = new Set(["armed", "running"]);
 const STILL = { link: 0, stiffness: 0 };
 
 /**

@@ -32,7 +32,7 @@ export class Operator extends EventTarget {
     return this.session.snapshot?.rig ?? SIMULATED;
   }
 
-  /** Whether a rig, emulated or real, is connected. */
+  /** Whether a rig is connected. */
   get isOnRig() {
     return this.rig.connected === true;
   }
