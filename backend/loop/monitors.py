@@ -126,6 +126,8 @@ class Monitors:
     def _look_at_speeds(self, seen: Seen, found: Found) -> None:
         m, limits = seen.measured, self._limits
         self._motor.take(m.motor_position, m.motor_age)
+        if any(fault is LINK_JUMP for fault, _ in found):
+            self._link = Speed(SPEED_S, self._period_s)  # a jump of the encoder is no speed of the link
         self._link.take(m.link_position, m.link_age)
         if seen.driven and abs(self._motor.value) > TOO_MUCH * limits.motor_speed:
             found.append((OVERSPEED, f"{self._motor.value:.2f} rad/s, limit {limits.motor_speed:g}"))

@@ -14,7 +14,7 @@ MOST_CYCLES = 5000
 
 def rig_file_at(port: int) -> RigFile:
     """At the lowest rate, whose deadlines a computer with much else to do keeps."""
-    return changed(rate_hz=100, bus={"options": {"host": "127.0.0.1", "port": port}})
+    return changed(rate_hz=200, bus={"options": {"host": "127.0.0.1", "port": port}})
 
 
 def turns(rig: CanopenRig, until: Callable[[Measured], bool], motor: float = 0.0, stiffness: float = 0.0) -> Measured:

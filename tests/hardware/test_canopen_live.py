@@ -96,7 +96,7 @@ def test_a_drive_fault_latches_until_it_is_reset_and_nothing_arms_again(
     rig: CanopenRig, emulator: EmulatorHandle
 ) -> None:
     arm_both(rig)
-    fault(emulator, "drive_fault", node=1, code=0x2310)
+    fault(emulator, "drive_fault", node=1, value=0x2310)
     assert tells(rig, MOTOR_DRIVE)
     turns(rig, lambda _: rig.axis("motor").words == "fault")
     assert rig.axis("motor").error_words == "0x2310 over-current"

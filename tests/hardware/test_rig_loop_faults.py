@@ -22,6 +22,7 @@ from backend.rigs.faults import (
     LINK_ENCODER,
     LINK_FROZEN,
     LINK_JUMP,
+    LINK_OVERSPEED,
     MOTOR_DRIVE,
     MOTOR_JUMP,
     NOT_A_NUMBER,
@@ -35,7 +36,7 @@ from backend.rigs.faults import (
 from backend.rigs.rig import AXES, Axis, AxisStatus, RigError
 from tests.hardware.rig_loop_bench import SCENARIO, RigBench, T, prepared
 from vssea_core.actuator.parameters import Actuator, StiffnessMechanism
-from vssea_core.signals.documents import ConstantDisturbance, Disturbances, SineReference
+from vssea_core.signals.documents import ConstantDisturbance, Disturbances
 
 
 @pytest.fixture
@@ -52,10 +53,9 @@ def load(torque: float) -> Break:
     return lambda bench: bench.rig.set_disturbances(Disturbances(link=(ConstantDisturbance(torque=torque),)))
 
 
-def follow_far(bench: RigBench) -> None:
-    """A reference that the rig cannot follow."""
-    fast = SineReference(amplitude=1.4, frequency_hz=3.0)
-    bench.do(messages.SetReference(fast))
+def kick(bench: RigBench) -> None:
+    """A load that throws the link."""
+    load(-14.0)(bench)
 
 
 CAUSES: list[tuple[str, Fault, Break, float]] = [
@@ -73,7 +73,7 @@ CAUSES: list[tuple[str, Fault, Break, float]] = [
     ("rebooted", REBOOTED, lambda b: b.rig.report(REBOOTED, "node 2"), T),
     ("bus off", BUS_OFF, lambda b: b.rig.report(BUS_OFF), T),
     ("weak motor", TORQUE_NOT_GIVEN, lambda b: b.rig.spoiled.update(motor_torque_seen=0.0), 1.5),
-    ("following", FOLLOWING, follow_far, 2.0),
+    ("link overspeed", LINK_OVERSPEED, kick, 1.0),
     ("outside", OUTSIDE, lambda b: b.rig.spoiled.update(link_position=1.7), T),
     ("position is no number", CORRUPTED, lambda b: b.rig.spoiled.update(motor_position=math.nan), T),
 ]

@@ -9,7 +9,13 @@ from backend.loop import messages
 from backend.loop.messages import Moved
 from tests.hardware.rig_loop_bench import RigBench, T, prepared
 from vssea_core.control.tuning import StateFeedback
-from vssea_core.signals.documents import ConstantStiffness, MoveReference, SineReference, StepReference
+from vssea_core.signals.documents import (
+    ConstantStiffness,
+    FilteredStepReference,
+    MoveReference,
+    SineReference,
+    StepReference,
+)
 
 NAN = float("nan")
 
@@ -247,7 +253,7 @@ def test_every_change_of_what_is_held_is_told(bench: RigBench) -> None:
 def test_limits_act_last_whatever_tuning_and_reference_ask(bench: RigBench) -> None:
     stiff = bench.scenario.tuning.model_copy(update={"controller": StateFeedback(natural_frequency=40.0)})
     bench.do(messages.Install(stiff, prepared(stiff), 2))
-    bench.do(messages.SetReference(StepReference(origin=0.0, target=1.5, start_s=0.0)))
+    bench.do(messages.SetReference(FilteredStepReference(origin=0.0, target=1.5, start_s=0.0, bandwidth=60.0)))
     first = len(bench.rig.asked)
     bench.follow()
     bench.pass_s(1.0)
