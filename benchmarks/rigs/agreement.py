@@ -55,7 +55,7 @@ def compare(rate_hz: int) -> None:
         time.sleep(TRACKED_S)
         span = recorded(server, begun_s + COMPARED_S[0], begun_s + COMPARED_S[1])
     reference = SineReference.model_validate(SINE)
-    alone = simulate(scenario.model_copy(update={"reference": reference, "duration_s": COMPARED_S[1]}), 1)
+    alone = simulate(scenario.model_copy(update={"reference": reference, "duration_s": COMPARED_S[1] + 1.0}), 1)
     rows = alone.rows[np.rint((span["time"] - begun_s) / scenario.timing.sample_time_s).astype(int)]
     for name, unit, scale in (("link_position", "mrad", 1e3), ("motor_torque", "N m", 1.0)):
         difference = scale * (span[name] - rows[:, INDEX[name]])
