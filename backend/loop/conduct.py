@@ -50,6 +50,7 @@ class Conduct:
         self.resetting: tuple[int, float] | None = None
         self.enable_until = self._armed_s = 0.0
         self._error = 0.0
+        self._looked_s = clock()
         self.become("connected", None)
 
     def stop(self, reason: str) -> None:
@@ -115,8 +116,13 @@ class Conduct:
         return Seen(
             on.measured, self._error, controller.spring_torque, controller.stiffness, controller.link_disturbance_estimate,
             controller.motor_disturbance_estimate, controller.stiffness_disturbance_estimate, on.homed, on.axes.any_on, closed,
-            (on.axes.enabled("motor"), on.axes.enabled("stiffness")),
+            (on.axes.enabled("motor"), on.axes.enabled("stiffness")), self._cycles(now),
         )  # fmt: skip
+
+    def _cycles(self, now: float) -> float:
+        """Return how many cycles long the one that ends now was; one at least, since a loop that was late catches up."""
+        before, self._looked_s = self._looked_s, now
+        return max(1.0, (now - before) / self.on.period_s)
 
     def _torques(self, row: NDArray[np.float64], now: float) -> tuple[float, float]:
         on = self.on

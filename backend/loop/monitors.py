@@ -59,9 +59,10 @@ class Seen(NamedTuple):
     homed: bool
     driven: bool  # an axis is enabled
     closed: bool  # the loops are closed and the torque is blended in
-    obeying: tuple[
-        bool, bool
-    ]  # motor and stiffness drive give what the loop asks, not what they brake with by themselves
+    obeying: tuple[bool, bool]
+    """Motor and stiffness drive give what the loop asks, not what they brake with by themselves."""
+    cycles: float = 1.0
+    """Cycles since the last look, by the clock: a loop that was late finds an axis farther on."""
 
 
 class Monitors:
@@ -100,7 +101,7 @@ class Monitors:
     def look(self, seen: Seen) -> Found:
         """Return every fault whose condition is fulfilled in this cycle, with its figures."""
         found: Found = []
-        self._look_at_jumps(seen.measured, found)
+        self._look_at_jumps(seen, found)
         self._look_at_speeds(seen, found)
         if seen.homed:
             self._look_at_positions(seen, found)
@@ -108,7 +109,8 @@ class Monitors:
         self._look_at_loop(seen, found)
         return found
 
-    def _look_at_jumps(self, m: Measured, found: Found) -> None:
+    def _look_at_jumps(self, seen: Seen, found: Found) -> None:
+        m = seen.measured
         jumps = (
             (LINK_JUMP, self._link_jump, m.link_position, m.link_age),
             (MOTOR_JUMP, self._motor_jump, m.motor_position, m.motor_age),
@@ -118,17 +120,17 @@ class Monitors:
             if age == 0:
                 if position != position:
                     found.append((NOT_A_NUMBER, f"{fault.name.split('_')[0]} encoder"))
-                elif jump.happened(position):
+                elif jump.happened(position, seen.cycles):
                     found.append((fault, f"by {jump.by:.3g} rad, at most {jump.most:.3g}"))
             else:
-                jump.miss()
+                jump.miss(seen.cycles)
 
     def _look_at_speeds(self, seen: Seen, found: Found) -> None:
         m, limits = seen.measured, self._limits
-        self._motor.take(m.motor_position, m.motor_age)
+        self._motor.take(m.motor_position, m.motor_age, seen.cycles)
         if any(fault is LINK_JUMP for fault, _ in found):
             self._link = Speed(SPEED_S, self._period_s)  # a jump of the encoder is no speed of the link
-        self._link.take(m.link_position, m.link_age)
+        self._link.take(m.link_position, m.link_age, seen.cycles)
         if seen.driven and abs(self._motor.value) > TOO_MUCH * limits.motor_speed:
             found.append((OVERSPEED, f"{self._motor.value:.2f} rad/s, limit {limits.motor_speed:g}"))
         if seen.closed and abs(self._link.value) > limits.link_speed:

@@ -9,17 +9,17 @@ class Jump:
         self._per_cycle_squared = acceleration * period_s * period_s
         self._before: float | None = None
         self._step = 0.0  # rad a cycle, of the newest two positions
-        self._cycles = 1
+        self._passed = 0.0
         self.by = self.most = 0.0
 
-    def miss(self) -> None:
+    def miss(self, cycles: float = 1.0) -> None:
         """Let a cycle pass without a new position."""
-        self._cycles += 1
+        self._passed += cycles
 
-    def happened(self, position: float) -> bool:
-        """Take a new position [rad]; return whether it is farther from where the axis was going than it can be."""
-        before, n = self._before, self._cycles
-        self._before, self._cycles = position, 1
+    def happened(self, position: float, cycles: float = 1.0) -> bool:
+        """Take a new position [rad], `cycles` after the last look; return whether the axis cannot have come there."""
+        before, n = self._before, self._passed + cycles
+        self._before, self._passed = position, 0.0
         if before is None:
             return False
         self.by = position - before - self._step * n
@@ -34,19 +34,19 @@ class Speed:
     def __init__(self, over_s: float, period_s: float) -> None:
         self._over_s, self._period_s = over_s, period_s
         self._before: float | None = None
-        self._cycles = 0
+        self._cycles = 0.0
         self.value = 0.0
 
-    def take(self, position: float, age: int) -> None:
-        """Take a position [rad] of this cycle, or one that is `age` cycles old and changes nothing."""
-        self._cycles += 1
+    def take(self, position: float, age: int, cycles: float = 1.0) -> None:
+        """Take a position [rad], `cycles` after the last look, or one that is `age` cycles old and changes nothing."""
+        self._cycles += cycles
         if age != 0:
             return
         if self._before is not None:
             passed = self._cycles * self._period_s
             share = min(1.0, passed / self._over_s)
             self.value += share * ((position - self._before) / passed - self.value)
-        self._before, self._cycles = position, 0
+        self._before, self._cycles = position, 0.0
 
 
 class Stillness:

@@ -79,6 +79,17 @@ def test_the_fastest_honest_travel_is_no_jump(monitors: Monitors) -> None:
         assert not {LINK_JUMP, MOTOR_JUMP, STIFFNESS_JUMP} & set(faults)
 
 
+def test_a_cycle_that_was_late_lets_an_axis_come_farther_and_is_no_speed(monitors: Monitors) -> None:
+    position, faults = 0.3, []
+    for k in range(60):
+        cycles = 4.0 if k % 20 == 19 else 1.0
+        position += 1.0 * T * cycles
+        moved = REST._replace(link_position=position, motor_position=position)
+        faults += found(monitors, seen(moved, cycles=cycles))
+    assert faults == []
+    assert monitors.motor_speed == pytest.approx(1.0, abs=0.05)
+
+
 def test_travel_over_missed_cycles_is_no_jump_but_a_jump_is() -> None:
     jump = Jump(5.0, 1000.0, T)
     for k in range(10):
