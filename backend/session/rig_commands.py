@@ -30,6 +30,12 @@ class RigCommands:
         self._session, self._clock = session, clock
         self._jogging: tuple[str, float] | None = None
         self._checked: set[tuple[int, float]] = set()
+        self._driving = 0
+
+    @property
+    def driving(self) -> bool:
+        """Whether a command that may switch the drives on is not answered yet."""
+        return self._driving > 0
 
     async def home(self, _: Nothing, by: str) -> Message:
         """Find both end stops of the stiffness axis."""
@@ -97,16 +103,6 @@ class RigCommands:
             ) from problem  # fmt: skip
         self._checked = {old for old in self._checked if old[0] == checked[0]} | {checked}
 
-    async def let_go(self) -> None:
-        """End a jog whose page has closed; the control process would by itself, a moment later."""
-        if self._jogging is None or not self._session.rig.connected:
-            return
-        self._jogging = None
-        try:
-            await self._session.link.command(messages.Jog(0.0, 0.0, self._clock()))
-        except Problem as problem:
-            self._note(f"the jog was not let go: {problem.detail}", "server")
-
     async def reset(self, by: str) -> None:
         """Leave a stop or a fault, drives off; refused while the cause stands. A control process that died is started anew."""
         await to_the_end(self._reset(by))
@@ -130,7 +126,11 @@ class RigCommands:
 
     async def _do(self, command: messages.Command, by: str, words: str, title: str) -> Message:
         self._jogging = None
-        done = await self._told(title, command, by)
+        self._driving += 1
+        try:
+            done = await self._told(title, command, by)
+        finally:
+            self._driving -= 1
         self._note(words, by)
         return {"time_s": done.time_s}
 

@@ -101,11 +101,15 @@ class RunCommands:
 
     async def stop(self, _: Nothing, by: str) -> Message:
         """Motor torque off at once (a rig brakes first), stiffness held. Passes every queue: it only writes the flag."""
+        self.stop_at_once(by)
+        return {}
+
+    def stop_at_once(self, by: str) -> None:
+        """Stop as the command does; `by` stands in the sentence: Stopped by ..."""
         session = self._session
         session.flag.raise_()
         if session.status.state not in ("stopped", "fault"):
             session.status.stopped_by = by
-        return {}
 
     def begun(self) -> None:
         """Tell the journal that a run began."""

@@ -181,6 +181,9 @@ class Session:
         self._tasks.discard(task)
         if not task.cancelled() and task.exception() is not None:
             logger.error("a task of the session failed", exc_info=task.exception())
+            if self.rig.connected:
+                self.runs.stop_at_once("a failure in the server")  # it may be what should have watched over the rig
+                self.note("fault", f"a task of the server failed: {task.exception()}", "server", "fault")
             self.status.fail(f"{task.exception()}. Restart the server; its log has the details.")
             self.tell_state()
 
