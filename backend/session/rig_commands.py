@@ -7,6 +7,7 @@ from backend.loop import messages
 from backend.problem import Problem
 from backend.rigs.rig_file import Limits
 from backend.session.arguments import Nothing
+from backend.session.permission import Permission
 from backend.session.planning import planned
 from backend.session.rig_arguments import Going, Jogging
 from backend.session.rig_limits import check_jog, check_move
@@ -103,13 +104,14 @@ class RigCommands:
             ) from problem  # fmt: skip
         self._checked = {old for old in self._checked if old[0] == checked[0]} | {checked}
 
-    async def reset(self, by: str) -> None:
+    async def reset(self, by: str, permit: Permission) -> None:
         """Leave a stop or a fault, drives off; refused while the cause stands. A control process that died is started anew."""
-        await to_the_end(self._reset(by))
+        await to_the_end(self._reset(by, permit))
 
-    async def _reset(self, by: str) -> None:
+    async def _reset(self, by: str, permit: Permission) -> None:
         session = self._session
         async with session.turn:
+            permit()
             if session.rig.state.lost:
                 await session.rig.connection.reconnect(by)
             else:

@@ -6,6 +6,7 @@ from backend.loop import messages
 from backend.problem import Problem
 from backend.session.arguments import Loading, Nothing, Pace, Samples
 from backend.session.journal import Run, wall_time
+from backend.session.permission import Permission, granted
 from backend.session.planning import planned
 from vssea_core.scenario import Scenario
 from vssea_core.scenarios import SCENARIOS
@@ -56,13 +57,14 @@ class RunCommands:
         self.begun()
         session.tell(session.document())
 
-    async def reset(self, _: Nothing, by: str) -> Message:
+    async def reset(self, _: Nothing, by: str, permit: Permission = granted) -> Message:
         """Back to t = 0; the only way out of a stop or a fault. A rig's time goes on."""
         session = self._session
         if session.rig.connected:
-            await session.rig.commands.reset(by)
+            await session.rig.commands.reset(by, permit)
             return {}
         async with session.turn:
+            permit()
             if session.link.ended:
                 await session.start_control()
                 await self.load(session.running.beginning)

@@ -12,7 +12,6 @@ from backend.compute.pool import JobFailedError, Pool
 from backend.presets.last import InForce
 from backend.problem import Problem
 from backend.session.arguments import Loading
-from backend.session.changes import Changes
 from backend.session.commands import Commands
 from backend.session.control_link import ControlLink
 from backend.session.control_reports import ControlReports
@@ -248,10 +247,6 @@ class Session:
     def command_names(self) -> list[str]:
         """Return the names of all commands."""
         return self.commands.names()
-
-    async def tune(self, asked: Changes, by: str) -> Message:
-        """Change the tuning, as the command does."""
-        return await self.parts.tune(asked, by)
 
     async def load_scenario(self, asked: Loading, by: str) -> Message:
         """Restart with another scenario, as the command does."""
