@@ -7,12 +7,11 @@ from backend.loop import messages
 from backend.problem import Problem
 from backend.rigs.rig_file import Limits
 from backend.session.arguments import Nothing
+from backend.session.jog_ends import JogEnds
 from backend.session.permission import Permission
-from backend.session.planning import planned
 from backend.session.rig_arguments import Going, Jogging
 from backend.session.rig_limits import check_jog, check_move
 from backend.session.uninterrupted import to_the_end
-from vssea_core.signals.documents import ConstantStiffness
 
 if TYPE_CHECKING:
     from backend.session.session import Session
@@ -30,7 +29,7 @@ class RigCommands:
     def __init__(self, session: "Session", clock: Callable[[], float]) -> None:
         self._session, self._clock = session, clock
         self._jogging: tuple[str, float] | None = None
-        self._checked: set[tuple[int, float]] = set()
+        self.ends = JogEnds(session)
         self._driving = 0
 
     @property
@@ -70,12 +69,12 @@ class RigCommands:
         return await self._do(messages.GoTo(asked.position, asked.speed), by, words, "Cannot go there")
 
     async def jog(self, asked: Jogging, by: str) -> Message:
-        """Move with a velocity until it is let go or not renewed."""
+        """Move with a velocity until it is let go or not renewed. Waits for nothing: a jog that is late is no jog."""
+        now = self._clock()
         limits = self._limits()
         check_jog(limits, asked.link, asked.stiffness)
         if asked.stiffness:
-            await self._check_tuning(limits.stiffness_high if asked.stiffness > 0.0 else limits.stiffness_low)
-        now = self._clock()
+            self.ends.check(limits.stiffness_high if asked.stiffness > 0.0 else limits.stiffness_low)
         goes_on = self._jogging is not None and now - self._jogging[1] <= JOGGED_S
         moving = not asked.harmless
         command = messages.Jog(asked.link, asked.stiffness, now)
@@ -86,23 +85,6 @@ class RigCommands:
             self._note("jog let go", by)
         self._jogging = (by, now) if moving else None
         return {"time_s": done.time_s}
-
-    async def _check_tuning(self, stiffness: float) -> None:
-        """Raise Problem if the tuning in force would be unstable at the stiffness [N m/rad] where a jog could end."""
-        session = self._session
-        checked = session.status.tuning_id, stiffness
-        if checked in self._checked:
-            return
-        there = session.scenario.model_copy(update={"stiffness_reference": ConstantStiffness(stiffness=stiffness)})
-        try:
-            await planned(session.design, there)
-        except Problem as problem:
-            why = problem.detail.removesuffix(" The old tuning keeps running.")
-            raise Problem(
-                409, "Cannot jog", f"The jog could end at {stiffness:g} N·m/rad, and the tuning does not fit there: {why} "
-                "Tune it more slowly, or command a stiffness nearer by.",
-            ) from problem  # fmt: skip
-        self._checked = {old for old in self._checked if old[0] == checked[0]} | {checked}
 
     async def reset(self, by: str, permit: Permission) -> None:
         """Leave a stop or a fault, drives off; refused while the cause stands. A control process that died is started anew."""

@@ -101,6 +101,7 @@ class RigSession:
         self.control.watch()
         self.faults.watch()
         if self.connected:
+            self.commands.ends.look()
             self.good.install(self._session.scenario.tuning)
             self._keep_core(self._session.status.state)
 

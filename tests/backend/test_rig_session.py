@@ -531,20 +531,3 @@ def test_after_a_dead_control_process_a_reset_may_fail_and_be_tried_again_or_the
         assert bench.session.scenario == simulated
 
     at_rig(data_dir, work)
-
-
-def test_a_stiffness_jog_that_could_end_where_the_tuning_is_unstable_is_refused_before_it_begins(
-    data_dir: Path,
-) -> None:
-    async def work(bench: RigBench) -> None:
-        await bench.to("armed")
-        await bench.ask("tune", changes={"controller.natural_frequency": 100.0, "observer.bandwidth": 100.0})
-        asked = len(bench.rig.asked)
-        problem = await refused(bench, "jog", stiffness=-100.0)
-        assert (problem.status, problem.title) == (409, "Cannot jog")
-        assert "could end at 25 N·m/rad" in problem.detail
-        assert len(bench.rig.asked) == asked
-        await bench.ask("jog", stiffness=100.0)
-        assert isinstance(bench.rig.asked[-1], messages.Jog)
-
-    at_rig(data_dir, work)
