@@ -41,7 +41,7 @@ class ControlCommands:
         name = self._pages.pop(key, "")
         if self._lease.leave(key):
             self._note(f"{name} has closed and lost control", name, "warning")
-            self._stop("the operator's page, which has closed")
+            self._stop("the operator's page closing")
 
     # ---- for others
 
@@ -111,7 +111,7 @@ class ControlCommands:
         name = self._name(key)
         self._lease.release(key)
         self._note(f"{name} gave up control", name)
-        self._stop("the operator, who gave up control")
+        self._stop("the operator giving up control")
         return {}
 
     async def ask(self, asked: TakingControl, by: str, key: str | None) -> Message:

@@ -32,8 +32,8 @@ async def silent_and_taken_by_another(bench: RigBench) -> None:
 
 
 ENDINGS = {
-    given_up: "the operator, who gave up control",
-    closed: "the operator's page, which has closed",
+    given_up: "the operator giving up control",
+    closed: "the operator's page closing",
     silent: "the operator's silence",
     silent_and_taken_by_another: "the operator's silence",
 }
