@@ -17,7 +17,7 @@ from vssea_core.actuator.spring import stiffness_motor_position
 from vssea_core.channels import INDEX
 from vssea_core.control.packing import law_of
 from vssea_core.control.tuning import Tuning
-from vssea_core.tick.controller import Controller, RigLimits
+from vssea_core.tick.controller import READING, Controller, RigLimits
 
 NOTHING_YET = Measured(0.0, 0.0, 0.0, 1, 1, 1, 0.0, 0.0, 0.0, 0.0)
 FARTHEST = 6.3  # rad; a reference can be no farther, and no rig can be armed there
@@ -69,7 +69,13 @@ class ConnectedRig:
         self.motor_torque = self.stiffness_torque = 0.0  # for the next exchange
         self._middle = 0.5 * (self.last_stage.theta_ms_stiff + self.last_stage.theta_ms_soft)
         self._begun = False
+        self._told = (READING, 0.0)  # mode and share of the last tick
         self._motor_zero = 0.0  # what an incremental motor encoder shows where the link's shows 0 [rad]
+
+    @property
+    def running(self) -> bool:
+        """Whether the law runs on measurements: there has been one of every node, and none is missing for long."""
+        return self._begun and oldest(self.measured) < STOPS
 
     def exchange(self) -> Found:
         """Exchange one cycle; what was not measured anew keeps its value and gets older. Return what went wrong."""
@@ -102,6 +108,7 @@ class ConnectedRig:
     def tick(self, mode: int, blend: float, row: NDArray[np.float64]) -> tuple[float, float]:
         """Run the law on what was measured, fill `row` (WIDTH) and return both torques [N m]."""
         m, controller = self.measured, self.controller
+        self._told = mode, blend
         if not self._begun:
             self.begin()
             self._begun = oldest(m) == 0
@@ -114,6 +121,12 @@ class ConnectedRig:
         if not self.homed:
             self._blank(row)
         return torques
+
+    def skip(self, row: NDArray[np.float64]) -> None:
+        """Pass a cycle in which this computer was too late to exchange: the drives hold, the state goes on as predicted."""
+        self.controller.missed(row, *self._told)
+        if not self.homed:
+            self._blank(row)
 
     def begin(self) -> None:
         """Start observers and references from what is measured."""

@@ -91,6 +91,8 @@ class RigLoop:
         if conduct is not None:
             self._late_cycles = self._late_cycles + missed if missed else 0
             self._missed_cycles += missed
+            for _ in range(min(missed, LATE_CYCLES) if conduct.on.running else 0):
+                self._skip(conduct, late_s)
             conduct.guard(self._late_cycles >= LATE_CYCLES, LOOP_LATE)
             self._cycle(conduct, late_s)
             self._report_when_due(conduct)
@@ -119,6 +121,13 @@ class RigLoop:
         if self._conduct is not None:
             self._ring.header[OVERRUNS] += missed
         return late, missed
+
+    def _skip(self, conduct: Conduct, late_s: float) -> None:
+        """Record a cycle that was missed, as predicted: samples stay evenly spaced, and the observers know of the time."""
+        _, rows = self._ring.room(1)
+        conduct.on.skip(rows[0, :WIDTH])
+        stamp(rows, self.epoch, conduct.on.period_s, late_s, 0.0)
+        self._ring.announce(1)
 
     def _cycle(self, conduct: Conduct, late_s: float) -> None:
         _, rows = self._ring.room(1)

@@ -30,7 +30,7 @@ class Bus(Part):
 class Drive(Part):
     """A CiA 402 drive in cyclic synchronous torque mode, and its encoder."""
 
-    node: int = Field(ge=1, le=127, description="CANopen node number.")
+    node: int = Field(ge=1, le=126, description="CANopen node number; 127 is this computer's own.")
     device_type: int = Field(0x00020192, description="What object 0x1000 must say; servo drive, CiA 402.")
     vendor: int | None = Field(None, description="What object 0x1018:1 must say; null = any.")
     serial: int | None = Field(None, description="What object 0x1018:4 must say; null = any.")
@@ -60,7 +60,9 @@ class LinkEncoder(Part):
     source: Literal["node", "motor_drive", "stiffness_drive"] = Field(
         "node", description="A node of its own, or the drive whose second encoder it is."
     )
-    node: int | None = Field(None, ge=1, le=127, description="CANopen node number, where source is node.")
+    node: int | None = Field(
+        None, ge=1, le=126, description="CANopen node number, where source is node; 127 is this computer's own."
+    )
     index: int = Field(0x6004, description="Object with the position: 0x6004 of CiA 406, the vendor's own on a drive.")
     subindex: int = Field(0, ge=0, le=255, description="Its subindex.")
     bits: Literal[8, 16, 32] = Field(32, description="Length of that object in the PDO.")

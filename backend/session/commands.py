@@ -1,6 +1,7 @@
 """The commands of a session by name: REST and websocket call the same, and the journal hears of each."""
 
 from collections.abc import Awaitable, Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from pydantic import BaseModel, ValidationError
@@ -42,34 +43,36 @@ class Command(NamedTuple):
     where: Literal["anywhere", "simulation", "rig"] = "anywhere"
     keyed: bool = False
     """Whether the method also takes the caller's key."""
+    waits: bool = False
+    """Whether it waits for the session's turn or a design: the method also takes a check, made again before it takes effect."""
 
 
 def command_table(session: "Session") -> dict[str, Command]:
     """Return every command of a session by its name. STOP needs nothing, and disarm and hold no control: as safe as STOP."""
     parts, runs, rig, control = session.parts, session.runs, session.rig.commands, session.rig.control
     return {
-        "tune": Command(Changes, parts.tune, moves=True),
-        "set_reference": Command(Changes, parts.set_reference, moves=True),
-        "set_stiffness": Command(Changes, parts.set_stiffness, moves=True),
-        "set_disturbances": Command(Changes, parts.set_disturbances, moves=True),
+        "tune": Command(Changes, parts.tune, moves=True, waits=True),
+        "set_reference": Command(Changes, parts.set_reference, moves=True, waits=True),
+        "set_stiffness": Command(Changes, parts.set_stiffness, moves=True, waits=True),
+        "set_disturbances": Command(Changes, parts.set_disturbances, moves=True, waits=True),
         "load_scenario": Command(Loading, runs.load_scenario, moves=True, where="simulation"),
         "pause": Command(Nothing, runs.pause, where="simulation"),
         "resume": Command(Nothing, runs.resume, where="simulation"),
         "step": Command(Samples, runs.step, where="simulation"),
-        "reset": Command(Nothing, runs.reset, moves=True),
+        "reset": Command(Nothing, runs.reset, moves=True, waits=True),
         "set_pace": Command(Pace, runs.set_pace, where="simulation"),
         "stop": Command(Nothing, runs.stop),
-        "undo": Command(Nothing, session.history.undo, moves=True),
-        "redo": Command(Nothing, session.history.redo, moves=True),
+        "undo": Command(Nothing, session.history.undo, moves=True, waits=True),
+        "redo": Command(Nothing, session.history.redo, moves=True, waits=True),
         "save_point": Command(SavePoint, session.history.save_point),
-        "return_to": Command(EntryNumber, session.history.return_to, moves=True),
+        "return_to": Command(EntryNumber, session.history.return_to, moves=True, waits=True),
         "pin": Command(PinnedSpan, session.pins.pin),
         "change_pin": Command(ExcerptChange, session.pins.change),
         "unpin": Command(ExcerptNumber, session.pins.unpin),
         "arm_trigger": Command(Arming, session.trigger.arm),
         "disarm_trigger": Command(Nothing, session.trigger.disarm),
         "save_preset": Command(Saving, session.presets.save),
-        "apply_preset": Command(Applying, session.presets.apply, moves=True),
+        "apply_preset": Command(Applying, session.presets.apply, moves=True, waits=True),
         "delete_preset": Command(Named, session.presets.delete),
         "connect_rig": Command(RigName, session.rig.connection.connect, where="simulation", keyed=True),
         "disconnect_rig": Command(Nothing, session.rig.connection.disconnect, moves=True, where="rig"),
@@ -143,4 +146,6 @@ class Commands:
         except ValidationError as error:
             raise from_validation(error, command.arguments, consequence="Nothing was changed.") from error
         self.permit(name, key, harmless=getattr(validated, "harmless", False))
+        if command.waits:
+            return await command.method(validated, by, partial(self.permit, name, key))
         return await (command.method(validated, by, key) if command.keyed else command.method(validated, by))

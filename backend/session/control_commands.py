@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 Message = dict[str, Any]
 BY_REST = "REST"
+DRIVEN = frozenset({"homing", "armed", "running"})
+"""States in which a rig moves, or holds, for its operator."""
 
 
 class ControlCommands:
@@ -35,13 +37,12 @@ class ControlCommands:
         self._pages[key] = name
         return key
 
-    def leave(self, key: str) -> bool:
-        """Take a page's control away as it closes; return whether it had it."""
+    def leave(self, key: str) -> None:
+        """Take a page's control away as it closes; a rig under torque stops."""
         name = self._pages.pop(key, "")
-        held = self._lease.leave(key)
-        if held:
+        if self._lease.leave(key):
             self._note(f"{name} has closed and lost control", name, "warning")
-        return held
+            self._stop("the operator's page closing")
 
     # ---- for others
 
@@ -61,10 +62,11 @@ class ControlCommands:
         }
 
     def watch(self) -> None:
-        """Tell of a lease that ended by silence."""
+        """Tell of a lease that ended by silence, and stop what moves under it."""
         silent = self._lease.expired()
         if silent is not None:
             self._note(f"{silent.name} was silent for {silent.length_s:g} s and lost control", silent.name, "warning")
+            self._stop("the operator's silence")
 
     def take_for_connecting(self, key: str | None) -> Party:
         """Give control to who connects a rig, for as long as may be: nothing can move yet.
@@ -90,6 +92,7 @@ class ControlCommands:
 
     async def take(self, asked: TakingControl, by: str, key: str | None) -> Message:
         """Take control that nobody has; answers the key that proves it."""
+        self.watch()  # whose lease has ended leaves nothing that moves to who takes it
         party = self._party(key, asked.expires_s)
         was = self._lease.holds(party.key)
         self._lease.take(party)
@@ -105,10 +108,11 @@ class ControlCommands:
         return {}
 
     async def release(self, _: Nothing, by: str, key: str | None) -> Message:
-        """Give control up; a rig that is armed then comes to a stop."""
+        """Give control up; a rig under torque stops."""
         name = self._name(key)
         self._lease.release(key)
         self._note(f"{name} gave up control", name)
+        self._stop("the operator giving up control")
         return {}
 
     async def ask(self, asked: TakingControl, by: str, key: str | None) -> Message:
@@ -132,6 +136,12 @@ class ControlCommands:
         self.heart.beat_operator()
         self._note(f"{name} handed control to {to.name}", name)
         return {}
+
+    def _stop(self, by: str) -> None:
+        """Stop a rig under torque: signs of life of who takes control next must not keep it going."""
+        session = self._session
+        if session.rig.connected and (session.status.state in DRIVEN or session.rig.commands.driving):
+            session.runs.stop_at_once(by)
 
     def _party(self, key: str | None, length_s: float) -> Party:
         """Return the caller; a page lives by its own signs of life, so its lease is always the shortest."""

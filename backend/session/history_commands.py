@@ -10,6 +10,7 @@ from backend.session.arguments import EntryNumber, Nothing, SavePoint
 from backend.session.changes import differences
 from backend.session.history import Entry, History, Pairs, Stamp
 from backend.session.journal import wall_time
+from backend.session.permission import Permission, granted
 from backend.session.sentences import changes_words, several, whose
 from vssea_core.scenario import CHANGEABLE, Scenario
 
@@ -66,13 +67,13 @@ class HistoryCommands:
         """Return the newest `count` entries, oldest first."""
         return self._history.last(count)
 
-    async def undo(self, _: Nothing, by: str) -> Message:
+    async def undo(self, _: Nothing, by: str, permit: Permission = granted) -> Message:
         """Take back the newest change in force, whoever made it."""
-        return await self._step(by, "undo")
+        return await self._step(by, "undo", permit)
 
-    async def redo(self, _: Nothing, by: str) -> Message:
+    async def redo(self, _: Nothing, by: str, permit: Permission = granted) -> Message:
         """Make the change again that was undone last."""
-        return await self._step(by, "redo")
+        return await self._step(by, "redo", permit)
 
     async def save_point(self, asked: SavePoint, by: str) -> Message:
         """Name the present state, to return to it."""
@@ -81,15 +82,16 @@ class HistoryCommands:
             entry = self._history.save_point(name, by, self.state(), self._stamp(self._session.status.time_s))
         return {"number": entry.number}
 
-    async def return_to(self, asked: EntryNumber, by: str) -> Message:
+    async def return_to(self, asked: EntryNumber, by: str, permit: Permission = granted) -> Message:
         """Go back to the state after an entry, as one change that can itself be undone."""
         session = self._session
         async with session.turn:
+            permit()
             entry = self._history.entry(asked.number)
             if entry is None:
                 raise Problem(404, "No such entry", f"There is no entry {asked.number} in the history (any more).")
             before = self.state()
-            at_s = await self._restore(entry.after, None, by)
+            at_s = await self._restore(entry.after, None, by, permit)
             after = self.state()
             if _fixed(before.beginning) == _fixed(after.beginning):
                 recorded = self._record_whole(by, before, before.now, after.now, at_s)
@@ -100,13 +102,14 @@ class HistoryCommands:
             session.note(kind, f"returned to {place}: {several(recorded.words) if recorded else 'no change'}", by)
         return {"tuning_id": session.status.tuning_id, "number": recorded.number if recorded else None}
 
-    async def _step(self, by: str, way: str) -> Message:
+    async def _step(self, by: str, way: str, permit: Permission) -> Message:
         session = self._session
         async with session.turn:
+            permit()
             entry = self._history.undoable if way == "undo" else self._history.redoable
             if entry is None:
                 raise Problem(409, f"Nothing to {way}", f"There is nothing to {way}. Nothing was changed.")
-            await self._restore(entry.before if way == "undo" else entry.after, entry.part, by)
+            await self._restore(entry.before if way == "undo" else entry.after, entry.part, by, permit)
             getattr(self._history, way)()
             kind = session.parts.kind_of(entry.part)
             done = "took back" if way == "undo" else "made again"
@@ -116,29 +119,29 @@ class HistoryCommands:
             "words": entry.words,
         }  # fmt: skip
 
-    async def _restore(self, state: State, part: str | None, by: str) -> float:
+    async def _restore(self, state: State, part: str | None, by: str, permit: Permission) -> float:
         """Put one part of a state in force, or all of it, and return the time [s] from which it is.
 
         Raises Problem, and nothing has changed.
         """
         session = self._session
         if part in CHANGEABLE:
-            return await self._put(state.now, (part,), by)
+            return await self._put(state.now, (part,), by, permit)
         if _fixed(session.running.beginning) != _fixed(state.beginning):
             await session.runs.load(state.beginning)
             at_s = 0.0
         else:
-            at_s = await self._put(state.now, CHANGEABLE, by)
+            at_s = await self._put(state.now, CHANGEABLE, by, permit)
         session.preset = state.preset
         session.tell(session.document(by))
         session.kept.soon()
         return at_s
 
-    async def _put(self, source: Scenario, parts: tuple[str, ...], by: str) -> float:
+    async def _put(self, source: Scenario, parts: tuple[str, ...], by: str, permit: Permission) -> float:
         present = self._session.scenario
         other = [part for part in parts if getattr(source, part) != getattr(present, part)]
         new = present.model_copy(update={part: getattr(source, part) for part in other})
-        return await self._session.parts.put(new, other, by)
+        return await self._session.parts.put(new, other, by, permit)
 
     def _record_whole(self, by: str, before: State, old: Scenario, new: Scenario, at_s: float) -> Entry[State] | None:
         """Add a change of any parts; an entry of a single part that may change live is one of that part."""

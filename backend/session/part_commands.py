@@ -7,6 +7,7 @@ from backend.loop import messages
 from backend.session.changes import Changes, with_changes
 from backend.session.journal import Change
 from backend.session.notes import ChangeNotes, Note
+from backend.session.permission import Permission, granted
 from backend.session.planning import planned
 from backend.session.running_scenario import part_differences, part_document
 from backend.session.sentences import changes_words
@@ -30,33 +31,34 @@ class PartCommands:
         self._session = session
         self._notes = ChangeNotes(self._note)
 
-    async def tune(self, asked: Changes, by: str) -> Message:
+    async def tune(self, asked: Changes, by: str, permit: Permission = granted) -> Message:
         """Change the tuning; refused, and the old one kept, if its own sampled loop is unstable."""
-        return await self.change("tuning", asked, by)
+        return await self.change("tuning", asked, by, permit)
 
-    async def set_reference(self, asked: Changes, by: str) -> Message:
+    async def set_reference(self, asked: Changes, by: str, permit: Permission = granted) -> Message:
         """Follow another reference, without a jump."""
-        return await self.change("reference", asked, by)
+        return await self.change("reference", asked, by, permit)
 
-    async def set_stiffness(self, asked: Changes, by: str) -> Message:
+    async def set_stiffness(self, asked: Changes, by: str, permit: Permission = granted) -> Message:
         """Command another stiffness; refused if the tuning would be unstable there."""
-        return await self.change("stiffness_reference", asked, by)
+        return await self.change("stiffness_reference", asked, by, permit)
 
-    async def set_disturbances(self, asked: Changes, by: str) -> Message:
+    async def set_disturbances(self, asked: Changes, by: str, permit: Permission = granted) -> Message:
         """Apply other disturbances, at once."""
-        return await self.change("disturbances", asked, by)
+        return await self.change("disturbances", asked, by, permit)
 
-    async def change(self, part: str, asked: Changes, by: str) -> Message:
-        """Change a part as `asked`. Raises Problem, and the old one is kept, if it does not fit."""
+    async def change(self, part: str, asked: Changes, by: str, permit: Permission = granted) -> Message:
+        """Change a part as `asked`. Raises Problem, and the old one is kept, if it does not fit or is no longer permitted."""
         session = self._session
         async with session.turn:
-            found = await self.change_in_turn(part, asked, by)
+            permit()
+            found = await self.change_in_turn(part, asked, by, permit)
             return {
                 "tuning_id": session.status.tuning_id,
                 "applied": {path: after for path, (_, after) in found.items()},
             }
 
-    async def change_in_turn(self, part: str, asked: Changes, by: str) -> Differences:
+    async def change_in_turn(self, part: str, asked: Changes, by: str, permit: Permission = granted) -> Differences:
         """Change a part while the session's turn is held; return what became different."""
         session = self._session
         new = with_changes(session.scenario, part, asked)
@@ -65,6 +67,7 @@ class PartCommands:
             session.rig.check(new, [part])
             before = session.history.state()
             prepared = await self._prepared(new, [part])
+            permit()
             time_s = await self._apply(new, part, prepared, asked, by)
             session.history.record(by, part, found, before, time_s)
             self._notes.add(part, by, found, session.status.epoch, time_s)
@@ -72,14 +75,15 @@ class PartCommands:
             session.kept.soon()
         return found
 
-    async def put(self, new: Scenario, parts: list[str], by: str) -> float:
+    async def put(self, new: Scenario, parts: list[str], by: str, permit: Permission = granted) -> float:
         """Put whole parts of another scenario in place of the present ones, all or none, while the turn is held.
 
-        Returns the time [s] from which all are in force. Raises Problem if they do not fit together.
+        Returns the time [s] from which all are in force. Raises Problem if they do not fit together, or are no longer permitted.
         """
         session = self._session
         session.rig.check(new, parts)
         prepared = await self._prepared(new, parts)
+        permit()
         time_s = session.status.time_s
         for part in parts:
             time_s = await self._apply(new, part, prepared, Changes(replace=part_document(new, part)), by)

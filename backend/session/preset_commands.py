@@ -11,6 +11,7 @@ from backend.presets.found import Found, line
 from backend.presets.last import InForce
 from backend.session.arguments import Applying, Loading, Named, Saving
 from backend.session.changes import Changes, validated
+from backend.session.permission import Permission, granted
 from backend.store.database import Database
 from backend.store.document import Edit
 from backend.store.expected import Expected
@@ -35,7 +36,7 @@ class PresetCommands:
         found = await self.put(self.presets, asked.name, content, expected, by, by, asked.note, asked.tags)
         return line(found.document) | {"content": found.raw}
 
-    async def apply(self, asked: Applying, by: str) -> Message:
+    async def apply(self, asked: Applying, by: str, permit: Permission = granted) -> Message:
         """Use a saved tuning: only what differs is sent, or only `paths` of it."""
         session = self._session
         live = session.scenario.tuning
@@ -43,7 +44,7 @@ class PresetCommands:
         changes = difference.chosen(asked.paths)
         answer: Message = {"tuning_id": session.status.tuning_id, "applied": {}}
         if changes:
-            answer = await session.tune(Changes(changes=changes), by)
+            answer = await session.parts.tune(Changes(changes=changes), by, permit)
         found = difference.found
         if found.fit.model is not None and found.part == session.scenario.tuning:
             session.preset = InForce.of(found)

@@ -7,11 +7,11 @@ from backend.loop import messages
 from backend.problem import Problem
 from backend.rigs.rig_file import Limits
 from backend.session.arguments import Nothing
-from backend.session.planning import planned
+from backend.session.jog_ends import JogEnds
+from backend.session.permission import Permission
 from backend.session.rig_arguments import Going, Jogging
 from backend.session.rig_limits import check_jog, check_move
 from backend.session.uninterrupted import to_the_end
-from vssea_core.signals.documents import ConstantStiffness
 
 if TYPE_CHECKING:
     from backend.session.session import Session
@@ -28,7 +28,13 @@ class RigCommands:
     def __init__(self, session: "Session", clock: Callable[[], float]) -> None:
         self._session, self._clock = session, clock
         self._jogged_s: float | None = None  # when the jog was last renewed
-        self._checked: set[tuple[int, float]] = set()
+        self.ends = JogEnds(session)
+        self._driving = 0
+
+    @property
+    def driving(self) -> bool:
+        """Whether a command that may switch the drives on is not answered yet."""
+        return self._driving > 0
 
     async def home(self, _: Nothing, by: str) -> Message:
         """Find both end stops of the stiffness axis."""
@@ -62,12 +68,12 @@ class RigCommands:
         return await self._do(messages.GoTo(asked.position, asked.speed), by, words, "Cannot go there")
 
     async def jog(self, asked: Jogging, by: str) -> Message:
-        """Move with a velocity until it is let go or not renewed."""
+        """Move with a velocity until it is let go or not renewed. Waits for nothing: a jog that is late is no jog."""
+        now = self._clock()
         limits = self._limits()
         check_jog(limits, asked.link, asked.stiffness)
         if asked.stiffness:
-            await self._check_tuning(limits.stiffness_high if asked.stiffness > 0.0 else limits.stiffness_low)
-        now = self._clock()
+            self.ends.check(limits.stiffness_high if asked.stiffness > 0.0 else limits.stiffness_low)
         goes_on = self._jogged_s is not None and now - self._jogged_s <= messages.JOG_LASTS_S
         moving = not asked.harmless
         command = messages.Jog(asked.link, asked.stiffness, now)
@@ -79,40 +85,14 @@ class RigCommands:
         self._jogged_s = now if moving else None
         return {"time_s": done.time_s}
 
-    async def _check_tuning(self, stiffness: float) -> None:
-        """Raise Problem if the tuning in force would be unstable at the stiffness [N m/rad] where a jog could end."""
-        session = self._session
-        checked = session.status.tuning_id, stiffness
-        if checked in self._checked:
-            return
-        there = session.scenario.model_copy(update={"stiffness_reference": ConstantStiffness(stiffness=stiffness)})
-        try:
-            await planned(session.design, there)
-        except Problem as problem:
-            why = problem.detail.removesuffix(" The old tuning keeps running.")
-            raise Problem(
-                409, "Cannot jog", f"The jog could end at {stiffness:g} N·m/rad, and the tuning does not fit there: {why} "
-                "Tune it more slowly, or command a stiffness nearer by.",
-            ) from problem  # fmt: skip
-        self._checked = {old for old in self._checked if old[0] == checked[0]} | {checked}
-
-    async def let_go(self) -> None:
-        """End a jog whose page has closed; the control process would by itself, a moment later."""
-        if self._jogged_s is None or not self._session.rig.connected:
-            return
-        self._jogged_s = None
-        try:
-            await self._session.link.command(messages.Jog(0.0, 0.0, self._clock()))
-        except Problem as problem:
-            self._note(f"the jog was not let go: {problem.detail}", "server")
-
-    async def reset(self, by: str) -> None:
+    async def reset(self, by: str, permit: Permission) -> None:
         """Leave a stop or a fault, drives off; refused while the cause stands. A control process that died is started anew."""
-        await to_the_end(self._reset(by))
+        await to_the_end(self._reset(by, permit))
 
-    async def _reset(self, by: str) -> None:
+    async def _reset(self, by: str, permit: Permission) -> None:
         session = self._session
         async with session.turn:
+            permit()
             if session.rig.state.lost:
                 await session.rig.connection.reconnect(by)
             else:
@@ -129,7 +109,11 @@ class RigCommands:
 
     async def _do(self, command: messages.Command, by: str, words: str, title: str) -> Message:
         self._jogged_s = None
-        done = await self._told(title, command, by)
+        self._driving += 1
+        try:
+            done = await self._told(title, command, by)
+        finally:
+            self._driving -= 1
         self._note(words, by)
         return {"time_s": done.time_s}
 

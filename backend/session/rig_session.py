@@ -100,13 +100,13 @@ class RigSession:
         self.control.watch()
         self.faults.watch()
         if self.connected:
+            self.commands.ends.look()
             self.good.install(self._session.scenario.tuning)
             self._keep_core(self._session.status.state)
 
     def leave(self, key: str) -> None:
-        """Take control from a page that has closed, and let go of what it held."""
-        if self.control.leave(key):
-            self._session.spawn(self.commands.let_go())
+        """Take control from a page that has closed; a rig under torque stops."""
+        self.control.leave(key)
 
     async def close(self) -> None:
         """Disconnect as the server ends."""

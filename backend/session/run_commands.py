@@ -6,6 +6,7 @@ from backend.loop import messages
 from backend.problem import Problem
 from backend.session.arguments import Loading, Nothing, Pace, Samples
 from backend.session.journal import Run, wall_time
+from backend.session.permission import Permission, granted
 from backend.session.planning import planned
 from vssea_core.scenario import Scenario
 from vssea_core.scenarios import SCENARIOS
@@ -56,13 +57,14 @@ class RunCommands:
         self.begun()
         session.tell(session.document())
 
-    async def reset(self, _: Nothing, by: str) -> Message:
+    async def reset(self, _: Nothing, by: str, permit: Permission = granted) -> Message:
         """Back to t = 0; the only way out of a stop or a fault. A rig's time goes on."""
         session = self._session
         if session.rig.connected:
-            await session.rig.commands.reset(by)
+            await session.rig.commands.reset(by, permit)
             return {}
         async with session.turn:
+            permit()
             if session.link.ended:
                 await session.start_control()
                 await self.load(session.running.beginning)
@@ -101,11 +103,15 @@ class RunCommands:
 
     async def stop(self, _: Nothing, by: str) -> Message:
         """Motor torque off at once (a rig brakes first), stiffness held. Passes every queue: it only writes the flag."""
+        self.stop_at_once(by)
+        return {}
+
+    def stop_at_once(self, by: str) -> None:
+        """Stop as the command does; `by` stands in the sentence: Stopped by ..."""
         session = self._session
         session.flag.raise_()
         if session.status.state not in ("stopped", "fault"):
             session.status.stopped_by = by
-        return {}
 
     def begun(self) -> None:
         """Tell the journal that a run began."""

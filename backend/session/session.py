@@ -12,7 +12,6 @@ from backend.compute.pool import JobFailedError, Pool
 from backend.presets.last import InForce
 from backend.problem import Problem
 from backend.session.arguments import Loading
-from backend.session.changes import Changes
 from backend.session.commands import Commands
 from backend.session.control_link import ControlLink
 from backend.session.control_reports import ControlReports
@@ -181,6 +180,9 @@ class Session:
         self._tasks.discard(task)
         if not task.cancelled() and task.exception() is not None:
             logger.error("a task of the session failed", exc_info=task.exception())
+            if self.rig.connected:
+                self.runs.stop_at_once("a failure in the server")  # it may be what should have watched over the rig
+                self.note("fault", f"a task of the server failed: {task.exception()}", "server", "fault")
             self.status.fail(f"{task.exception()}. Restart the server; its log has the details.")
             self.tell_state()
 
@@ -245,10 +247,6 @@ class Session:
     def command_names(self) -> list[str]:
         """Return the names of all commands."""
         return self.commands.names()
-
-    async def tune(self, asked: Changes, by: str) -> Message:
-        """Change the tuning, as the command does."""
-        return await self.parts.tune(asked, by)
 
     async def load_scenario(self, asked: Loading, by: str) -> Message:
         """Restart with another scenario, as the command does."""

@@ -204,7 +204,8 @@ def test_a_page_that_closes_while_it_jogs_stops_the_rig(
         thread.join()
     page.socket.close()
     stopped = caller.comes("stopped", 5.0)
-    assert "silent" in stopped["reason"]
+    is_late = "silent" in stopped["reason"]  # on a busy machine the control process may notice first
+    assert is_late or stopped["sentence"].startswith("Stopped by the operator's page closing at ")
     assert stopped["control"]["operator"] is None
     until(lambda: emulator.control({"do": "state"})["link_velocity"] == pytest.approx(0.0, abs=0.01), 5.0)
     assert any(event["text"] == f"{name} has closed and lost control" for event in events(caller))

@@ -303,21 +303,6 @@ def test_a_caller_without_a_page_proves_control_by_its_key_and_a_page_name_prove
     at_rig(data_dir, work)
 
 
-def test_a_page_that_closes_loses_control_at_once_and_its_jog_is_let_go(data_dir: Path) -> None:
-    async def work(bench: RigBench) -> None:
-        await bench.to("armed")
-        await bench.ask("jog", link=0.2)
-        bench.session.rig.leave(bench.keys["page 1"])
-        assert bench.snapshot()["control"]["operator"] is None
-        await bench.settled()
-        last = bench.rig.asked[-1]
-        assert isinstance(last, messages.Jog)
-        assert (last.link, last.stiffness) == (0.0, 0.0)
-        assert "page 1 has closed and lost control" in bench.events("control")
-
-    at_rig(data_dir, work)
-
-
 def test_a_silent_operator_is_told_of_once(data_dir: Path) -> None:
     async def work(bench: RigBench) -> None:
         await bench.ask("connect_rig", rig="emulator")
@@ -544,22 +529,5 @@ def test_after_a_dead_control_process_a_reset_may_fail_and_be_tried_again_or_the
         await bench.ask("disconnect_rig")
         assert bench.snapshot()["state"] == "running"
         assert bench.session.scenario == simulated
-
-    at_rig(data_dir, work)
-
-
-def test_a_stiffness_jog_that_could_end_where_the_tuning_is_unstable_is_refused_before_it_begins(
-    data_dir: Path,
-) -> None:
-    async def work(bench: RigBench) -> None:
-        await bench.to("armed")
-        await bench.ask("tune", changes={"controller.natural_frequency": 100.0, "observer.bandwidth": 100.0})
-        asked = len(bench.rig.asked)
-        problem = await refused(bench, "jog", stiffness=-100.0)
-        assert (problem.status, problem.title) == (409, "Cannot jog")
-        assert "could end at 25 N·m/rad" in problem.detail
-        assert len(bench.rig.asked) == asked
-        await bench.ask("jog", stiffness=100.0)
-        assert isinstance(bench.rig.asked[-1], messages.Jog)
 
     at_rig(data_dir, work)

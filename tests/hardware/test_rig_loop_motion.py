@@ -7,6 +7,7 @@ import pytest
 
 from backend.loop import messages
 from backend.loop.messages import Moved
+from backend.rigs.simulated import SimulatedRig
 from tests.hardware.rig_loop_bench import RigBench, T, prepared
 from vssea_core.control.tuning import StateFeedback
 from vssea_core.signals.documents import (
@@ -264,3 +265,30 @@ def test_limits_act_last_whatever_tuning_and_reference_ask(bench: RigBench) -> N
     assert grown.max() <= 20000.0 * T + 1e-9
     assert limits & (256 | 512 | 1024 | 2048 | 4096)
     assert bench.rig.plant.theta_l < 1.65
+
+
+def torque_with_late_cycles(late: int) -> float:
+    """Follow a sine while the loop is `late` whole cycles late, ten times; return the largest change of torque [N m]."""
+    bench = RigBench()
+    try:
+        bench.armed()
+        bench.follow()
+        bench.pass_s(1.5)
+        first = len(bench.rig.asked)
+        for _ in range(10):
+            bench.turns(40)
+            for _ in range(late):
+                SimulatedRig.exchange(bench.rig, *bench.rig.asked[-1])  # the drives hold, time passes
+                bench.now += T
+            bench.turn(missed=late)
+        assert bench.state == "running"
+        assert np.allclose(np.diff(bench.channel("time")), T)
+        return float(np.abs(np.diff(np.array(bench.rig.asked[first:])[:, 0])).max())
+    finally:
+        bench.close()
+
+
+def test_a_loop_that_was_late_by_whole_cycles_does_not_kick() -> None:
+    usual = torque_with_late_cycles(0)
+    assert torque_with_late_cycles(1) < usual + 3.0
+    assert torque_with_late_cycles(3) < usual + 6.0

@@ -13,6 +13,7 @@ const WAYS = [
 /** Hold to move: by pointer on a button, or by the arrow keys while the pad has focus. Letting go stops, whatever way. */
 export class JogPad {
   #held = new Set(); // ids of what is held
+  #told = ""; // the problem of the jog that was shown last
 
   /** @param {object} desk {session, operator, jog, choices} */
   constructor({ session, operator, jog, choices }) {
@@ -101,7 +102,7 @@ export class JogPad {
   #jogged() {
     if (!this.jog.isHeld) this.#held.clear();
     for (const [id, button] of this.buttons) button.dataset.held = String(this.#held.has(id));
-    if (this.jog.problem) this.panel.say(this.jog.problem);
+    if (this.jog.problem !== this.#told) this.panel.say((this.#told = this.jog.problem));
   }
 
   get isPossible() {
