@@ -6,7 +6,7 @@ import numpy as np
 
 from benchmarks.live_server import open_page
 from benchmarks.rigs.activities import idle, tracking
-from benchmarks.rigs.emulated import armed, emulated_rig
+from benchmarks.rigs.emulated import CENTRED, armed, emulated_rig
 from benchmarks.rigs.operator import Operator
 
 COUNT = 50
@@ -30,6 +30,8 @@ def main() -> None:
                     operator.wait(lambda: not operator.snapshot["rig"]["cannot_arm"], "readiness to arm")
                     operator.ask("arm")
                     operator.wait_for("armed")
+                operator.ask("go_to", position=0.0, speed=0.6)
+                operator.wait(lambda: operator.snapshot["rig"]["motion"] in CENTRED, "centre")
                 activity(operator)
                 time.sleep(0.3)
                 emulator.control({"do": "watch"})
