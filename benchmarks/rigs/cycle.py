@@ -32,7 +32,7 @@ def measure(rate_hz: int) -> None:
             print(f"  {name:13}" + "   ".join(f"{label} {value:.0f}" for label, value in report[name].items()))
         load = 100.0 * (spent["vssea control"] - processor["vssea control"]) / DURATION_S
         kind = "real-time" if report["real_time"] else "best effort"
-        print(f"  state {operator.state}; control process {load:.0f} % of a core; scheduling {kind}")
+        print(f"  {operator.snapshot['sentence']}; control process {load:.0f} % of a core; scheduling {kind}")
 
 
 def main() -> None:
