@@ -10,13 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from backend.emulator.plant import default_actuator
 from benchmarks.live_server import Server
 from benchmarks.rigs.activities import SINE
 from benchmarks.rigs.emulated import armed, emulated_rig
 from benchmarks.rigs.operator import Operator
 from vssea_core.channels import INDEX
 from vssea_core.scenario import Scenario
-from vssea_core.signals.documents import SineReference
+from vssea_core.signals.documents import ConstantStiffness, SineReference
 from vssea_core.simulation.run import simulate
 
 TRACKED_S = 14.0
@@ -54,8 +55,13 @@ def compare(rate_hz: int) -> None:
         begun_s = operator.ask("follow")["time_s"]
         time.sleep(TRACKED_S)
         span = recorded(server, begun_s + COMPARED_S[0], begun_s + COMPARED_S[1])
-    reference = SineReference.model_validate(SINE)
-    alone = simulate(scenario.model_copy(update={"reference": reference, "duration_s": COMPARED_S[1] + 1.0}), 1)
+    same = {
+        "actuator": default_actuator(),  # the emulated one: with friction and lag
+        "reference": SineReference.model_validate(SINE),
+        "stiffness_reference": ConstantStiffness(stiffness=float(np.mean(span["stiffness"]))),
+        "duration_s": COMPARED_S[1] + 1.0,
+    }
+    alone = simulate(scenario.model_copy(update=same), 1)
     rows = alone.rows[np.rint((span["time"] - begun_s) / scenario.timing.sample_time_s).astype(int)]
     for name, unit, scale in (("link_position", "mrad", 1e3), ("motor_torque", "N m", 1.0)):
         difference = scale * (span[name] - rows[:, INDEX[name]])
