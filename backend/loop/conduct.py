@@ -286,6 +286,8 @@ class Conduct:
 
     def _end_stop(self) -> None:
         """Become what the stop was for; a fault that latched on the way goes first."""
+        if self.on.running and not (self.stopping is not None and self.stopping.holding):
+            self.on.begin()  # what was followed ends here: the reference is where the link is
         if self.latch:
             self.become("fault", self.latch.first)
         elif self.goal == "ready":

@@ -339,3 +339,11 @@ def test_a_stopped_rig_goes_on_measuring(bench: RigBench) -> None:
     bench.turns(100)
     assert bench.reader.written - before == 100
     assert SCENARIO.timing.sample_time_s == pytest.approx(np.diff(bench.channel("time")[-50:]).mean())
+
+
+def test_after_a_stop_the_reference_rests(bench: RigBench) -> None:
+    come_to(bench, "running")
+    bench.stop()
+    bench.until("stopped", most_s=3.0)
+    bench.pass_s(1.0)
+    assert np.ptp(bench.channel("reference")[-400:]) == 0.0
