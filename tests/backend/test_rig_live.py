@@ -15,6 +15,8 @@ from backend.session.spare_core import own_cores
 from tests.backend.live_page import LivePage
 from tests.backend.server import Server, until
 
+pytestmark = pytest.mark.real_time
+
 BUILT_IN = Path(__file__).parents[2] / "backend/rigs/emulator.toml"
 RATE_HZ = 250
 RENEW_S = 0.1

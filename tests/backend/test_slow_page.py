@@ -89,6 +89,7 @@ def test_a_page_that_takes_nothing_is_let_go_with_a_reason(monkeypatch: pytest.M
     parts = {
         "margins": SimpleNamespace(newest=None), "history": SimpleNamespace(greeting=dict), "pins": SimpleNamespace(message=_pins),
         "trigger": SimpleNamespace(message=dict), "log": log,
+        "rig": SimpleNamespace(control=SimpleNamespace(join=lambda name: name), leave=lambda key: None),
     }  # fmt: skip
     session = SimpleNamespace(listeners=set(), run_id="run", snapshot=dict, document=dict, **parts)
     recorder = SimpleNamespace(document=dict)

@@ -15,7 +15,7 @@ from tests.backend.server import Server, free_port, until
 from tests.browser.waiting import wait_until
 
 expect.set_options(timeout=30_000)
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.real_time]
 OpenPage = Callable[..., Page]
 RIG = "bench"
 SILENT_RIG = "nobody home"

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from vssea_core.actuator.spring import stiffness_motor_position
+from vssea_core.control.law import Law
 from vssea_core.control.packing import ROW, take_row
 from vssea_core.control.prepared import prepare
 from vssea_core.control.tuning import Baseline, PositionObserver, Schedule, SlidingMode, StateFeedback, Tuning
@@ -35,7 +36,10 @@ def row_at(prepared: np.ndarray, tuning: Tuning, stiffness: float) -> np.ndarray
 def test_between_the_rows_of_the_table_gains_are_those_of_a_design_made_there(tuning: Tuning, stiffness: float) -> None:
     table = row_at(prepare(tuning, 1e-3), tuning, stiffness)
     made_there = row_at(prepare(tuning, 1e-3, (stiffness, stiffness)), tuning, stiffness)
-    assert np.allclose(table, made_there, rtol=2e-4, atol=1e-9)
+    size = np.abs(made_there)
+    x1, x3 = Law._fields.index("x1"), Law._fields.index("x3")
+    size[x1 : x1 + 2] = np.maximum(size[x1 : x1 + 2], size[x3 : x3 + 2])  # x1 passes through zero; x3 has its unit
+    assert np.all(np.abs(table - made_there) <= 2e-4 * size + 1e-9)
 
 
 def test_outside_the_table_its_ends_hold() -> None:

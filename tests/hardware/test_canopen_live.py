@@ -18,6 +18,8 @@ from tests.backend.server import until
 from tests.hardware.fake_rig import GEAR_RATIO
 from tests.hardware.live_rig import TORQUE, arm_both, pushed, rig_file_at, turns
 
+pytestmark = pytest.mark.real_time
+
 
 @pytest.fixture(scope="module")
 def running() -> Iterator[EmulatorHandle]:

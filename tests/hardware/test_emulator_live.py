@@ -18,6 +18,8 @@ from backend.cli import app
 from backend.emulator.can_interface import CanInterface
 from backend.emulator.start import EmulatorHandle, start_emulator
 
+pytestmark = pytest.mark.real_time
+
 OBJECTS = {
     0x1000: UNSIGNED32, 0x1008: VISIBLE_STRING, 0x1017: UNSIGNED16, 0x6007: INTEGER16, 0x6060: INTEGER8, 0x6064: INTEGER32,
     0x6071: INTEGER16, 0x6076: UNSIGNED32,

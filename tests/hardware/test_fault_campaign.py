@@ -10,6 +10,8 @@ import pytest
 from benchmarks.rigs.breakages import BREAKAGES
 from benchmarks.rigs.campaign import Bench, outcome
 
+pytestmark = pytest.mark.real_time
+
 SHORT = {
     "motor drive fault": "tracking",
     "link lost": "jogging",

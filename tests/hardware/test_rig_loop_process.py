@@ -16,6 +16,8 @@ from backend.telemetry.ring import EPOCH, Ring, RingReader
 from backend.telemetry.stop_flag import StopFlag
 from tests.hardware.rig_loop_bench import FILE, SCENARIO, prepared
 
+pytestmark = pytest.mark.real_time
+
 LIMIT_S = 300.0  # to compile on a busy machine
 
 
