@@ -3,12 +3,14 @@
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import httpx
 import pytest
 from playwright.sync_api import Browser, ConsoleMessage, Page, sync_playwright
 
 from tests.backend.server import Server, until
 from tests.browser.waiting import PATIENCE_MS, wait_until
 
+ANALYSIS_LIMIT_S = 240.0
 FLAGS = (
     "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
@@ -19,9 +21,15 @@ FLAGS = (
 def browser_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     started = Server(tmp_path_factory.mktemp("data"), VSSEA_SCENE="true")
     try:
-        yield started.wait_until_running()
+        yield with_margins(started.wait_until_running())
     finally:
         started.terminate()
+
+
+def with_margins(server: Server) -> Server:
+    """The server once its analysis answers: in a new clone that has to be compiled first, for longer than a page waits."""
+    httpx.post(server.url + "/api/analysis", json={}, trust_env=False, timeout=ANALYSIS_LIMIT_S).raise_for_status()
+    return server
 
 
 @pytest.fixture(scope="session")

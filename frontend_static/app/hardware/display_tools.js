@@ -2,8 +2,8 @@ import { element } from "../element.js";
 
 const CHOICES = [
   { name: "angle", label: "Angles in", options: [["rad", "rad"], ["deg", "deg"]] },
-  { name: "side", label: "Motor shown at", options: [["gear", "gear side"], ["motor", "motor side"]] },
-  { name: "torque", label: "Motor shown as", options: [["torque", "torque"], ["current", "current"]] },
+  { name: "side", label: "Side of the motor", options: [["gear", "gear side"], ["motor", "motor side"]] },
+  { name: "torque", label: "Torque or current", options: [["torque", "torque"], ["current", "current"]] },
 ];
 
 /** In which units the view shows its numbers and plots: three choices in the line above the plots. */
