@@ -1,8 +1,5 @@
 """The loop of a rig on a bench: a simulated rig, a ring, a flag, beats, and a pipe whose other end is the test's."""
 
-from collections import deque
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,6 +14,7 @@ from backend.rigs.simulated import SimulatedRig
 from backend.telemetry.beats import LEASE, WEB, Beats
 from backend.telemetry.ring import Ring, RingReader, RingWriter
 from backend.telemetry.stop_flag import StopFlag
+from tests.backend.loop_bench import Pipe
 from vssea_core.actuator.parameters import Actuator, EquilibriumMotor, Timing
 from vssea_core.channels import INDEX
 from vssea_core.control.prepared import prepare
@@ -105,28 +103,6 @@ class BrokenRig(SimulatedRig):
 
     def switch_off_by_itself(self, axis: Axis) -> None:
         super().disarm(axis)
-
-
-class Pipe:
-    """The loop's end of a pipe; commands wait in `inbox`, reports end up in `outbox`."""
-
-    def __init__(self) -> None:
-        self.inbox: deque[Any] = deque()
-        self.outbox: list[messages.Report] = []
-        self.closed = False
-
-    def poll(self) -> bool:
-        return bool(self.inbox) or self.closed
-
-    def recv(self) -> Any:
-        if not self.inbox:
-            raise EOFError
-        return self.inbox.popleft()
-
-    def send(self, report: messages.Report) -> None:
-        if self.closed:
-            raise BrokenPipeError
-        self.outbox.append(report)
 
 
 class RigBench:
