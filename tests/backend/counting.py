@@ -3,10 +3,12 @@
 import json
 import sys
 
+from backend.problem import Problem
 from backend.store import listing, versioned
 from backend.store.database import Database
 from backend.store.document import Draft
 from backend.store.expected import Expected, Stale
+from backend.store.troubles import LOCKED
 
 NAME = "counter"
 
@@ -23,17 +25,21 @@ def read(database: Database) -> tuple[int, Expected]:
 
 
 def count_up(url: str, times: int) -> int:
-    """Add one `times` times, trying again whenever another client was faster; return how often that was."""
+    """Add one `times` times, trying again whenever another client was faster or held the lock; return how often that was."""
     database, refused = Database(url), 0
     try:
         for _ in range(times):
             while True:
-                count, expected = read(database)
                 try:
+                    count, expected = read(database)
                     with database.begin() as connection:
                         versioned.put(connection, "preset", NAME, draft(count + 1), expected)
                     break
                 except Stale:
+                    refused += 1
+                except Problem as problem:
+                    if problem.title != LOCKED.title:
+                        raise
                     refused += 1
     finally:
         database.close()
