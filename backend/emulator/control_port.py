@@ -6,6 +6,8 @@ import socket
 from collections.abc import Callable
 from typing import Any
 
+from backend.emulator.listening import Listening
+
 Answer = Callable[[dict[str, Any]], dict[str, Any]]
 PORT = 29536
 """Of the bus, unless another one is asked for; the control port is the next."""
@@ -17,23 +19,17 @@ class ControlPort:
 
     def __init__(self, port: int, selector: selectors.BaseSelector, answer: Answer) -> None:
         self._selector, self._answer = selector, answer
-        self._listening = socket.create_server(("127.0.0.1", port))
-        self._listening.setblocking(False)
-        self.port: int = self._listening.getsockname()[1]
         self._text: dict[socket.socket, bytes] = {}
-        selector.register(self._listening, selectors.EVENT_READ, self._accept)
+        self._listening = Listening(port, selector, self._take)
+        self.port = self._listening.port
 
     def close(self) -> None:
         """Let all clients go."""
         for connection in tuple(self._text):
             self._let_go(connection)
-        self._selector.unregister(self._listening)
         self._listening.close()
 
-    def _accept(self, _events: int) -> None:
-        connection, _ = self._listening.accept()
-        connection.setblocking(False)
-        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    def _take(self, connection: socket.socket) -> None:
         self._text[connection] = b""
         self._selector.register(connection, selectors.EVENT_READ, lambda _events: self._ready(connection))
 

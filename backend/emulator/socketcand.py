@@ -8,6 +8,8 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 
+from backend.emulator.listening import Listening
+
 HELD_BACK_S = 0.05
 """How long a client gets no frames after its handshake: its last answer has to arrive alone."""
 MOST_WAITING = 1 << 20  # bytes; a client that reads so little is let go
@@ -83,13 +85,11 @@ class SocketcandServer:
 
     def __init__(self, port: int, selector: selectors.BaseSelector, receive: Receive) -> None:
         self._selector, self._receive = selector, receive
-        self._listening = socket.create_server(("127.0.0.1", port))
-        self._listening.setblocking(False)
-        self.port: int = self._listening.getsockname()[1]
+        self._listening = Listening(port, selector, self._take_client)
+        self.port = self._listening.port
         self._clients: list[Client] = []
         self._outgoing = bytearray()
         self._held: set[Client] = set()  # shortly after their handshake
-        selector.register(self._listening, selectors.EVENT_READ, self._accept)
 
     def send(self, can_id: int, data: bytes) -> None:
         """Send a frame to every client, with the next `flush`."""
@@ -112,13 +112,9 @@ class SocketcandServer:
         """Let all clients go."""
         for client in tuple(self._clients):
             self._let_go(client)
-        self._selector.unregister(self._listening)
         self._listening.close()
 
-    def _accept(self, _events: int) -> None:
-        connection, _ = self._listening.accept()
-        connection.setblocking(False)
-        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    def _take_client(self, connection: socket.socket) -> None:
         client = Client(connection)
         self._clients.append(client)
         self._selector.register(connection, selectors.EVENT_READ, lambda events: self._ready(client, events))

@@ -7,6 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from backend.loop import messages
 from backend.loop.messages import AxisReport, Changed, Done, LatchedFault, Moved, RigReport
 from backend.problem import Problem, refused
@@ -25,6 +27,8 @@ from vssea_core.channels import INDEX
 from vssea_core.scenario import Scenario
 from vssea_core.scenarios import REALISTIC
 from vssea_core.signals.documents import ConstantStiffness, JogReference
+
+SINE = {"kind": "sine", "amplitude": 0.2, "frequency_hz": 0.5, "offset": 0.312}
 
 EMULATOR = rig_file_of((Path(__file__).parents[2] / "backend/rigs/emulator.toml").read_text("utf-8"))
 IDENTITY = Identity("emulated", "emulator", (("motor drive, node 1", "emulated drive"),))
@@ -272,3 +276,13 @@ def at_rig(folder: Path, work: Callable[[RigBench], Any], **options: Any) -> Non
             await work(bench)
 
     asyncio.run(run())
+
+
+async def refusal_of(bench: RigBench, command: str, by: str = "page 1", **arguments: Any) -> Problem:
+    """Why a command is refused."""
+    with pytest.raises(Problem) as refusal:
+        await bench.ask(command, by, **arguments)
+    return refusal.value
+
+
+# ---- there and back
