@@ -37,10 +37,10 @@ from vssea_core.control.packing import (
     take_row,
 )  # fmt: skip
 from vssea_core.signals.references import TRANSITION_SIZE
-from vssea_core.signals.stiffness import SLEW_SIZE, SLEWED_SIZE, Slew
+from vssea_core.signals.stiffness import SLEW_SIZE, SLEWED_SIZE, Slew, Slewed, commanded
 from vssea_core.simulation.rig_period import needs_parts
 from vssea_core.simulation.state import APPLIED, DELAYED, HEAT, MEMORY, PENDING, PLANT, SLEWED, TRANSITION, loaded_rig
-from vssea_core.tick.decision import decide, gains_at, is_changing
+from vssea_core.tick.decision import decide, gains_at, is_changing, targets
 
 RUNNING, NOT_FINITE, SPRING_LEFT, RAN_AWAY = 0, 1, 2, 3
 ENDINGS = {
@@ -100,7 +100,7 @@ def run(
     heat = Heat(state[PLANT], state[PLANT + 1])
     memory = loaded_memory(state[MEMORY : MEMORY + MEMORY_SIZE])
     transition = state[TRANSITION : TRANSITION + TRANSITION_SIZE]
-    slewed = state[SLEWED : SLEWED + SLEWED_SIZE]
+    slewed = Slewed(*to_fixed_tuple(state[SLEWED : SLEWED + SLEWED_SIZE], SLEWED_SIZE))
     on_its_way = state[DELAYED : DELAYED + DELAY_LINE]
     in_parts = needs_parts(rig, link_terms, motor_terms, stiffness_terms)
     part_lags = (rig.lags[0], rig.lags[0])
@@ -127,9 +127,10 @@ def run(
                 break
             time = (first + i) * period
             y = measure(rig.encoders, rig.noise, now, first + i)
-            memory, target, stiffness_target, rate_limited, terms = decide(
+            target, aim = targets(predicts, reference, transition, changing, time, period)
+            memory, stiffness_target, slewed, rate_limited, terms = decide(
                 observing, tuning, predicts, memory, y, applied_e, applied_ms, pending_e,
-                reference, transition, changing, slew, slewed, time, period,
+                aim, slew, slewed, commanded(slew, time), period,
             )  # fmt: skip
             demanded = terms.motor_torque if enabled else 0.0
             torque, available, bits = limit_motor_torque(drives, heat, demanded, now.omega_e)
@@ -214,5 +215,7 @@ def run(
         state[PLANT + i] = heat[i]
     state[APPLIED], state[APPLIED + 1] = applied_e, applied_ms
     state[PENDING], state[PENDING + 1] = pending_e, pending_ms
+    for i in range(SLEWED_SIZE):
+        state[SLEWED + i] = slewed[i]
     keep_memory(state[MEMORY : MEMORY + MEMORY_SIZE], memory)
     return done, end
