@@ -24,7 +24,7 @@ def course(
     at = stiffness_motor_position(first, MECHANISM.spring_constant)
     slewed, targets, flags = Slewed(at, at, 0.0, 0.0), [], []
     for k in range(3000):
-        target, slewed, limited = advance_stiffness(slew, slewed, commanded(slew, k * T), tau_s, T)
+        target, slewed, limited = advance_stiffness(slew, slewed, True, commanded(slew, k * T), tau_s, T)
         targets.append(target)
         flags.append(limited)
     return np.array(targets), np.array(flags)

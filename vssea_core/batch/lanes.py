@@ -39,7 +39,19 @@ from vssea_core.actuator.spring import leaf
 from vssea_core.batch import layout as at
 from vssea_core.batch.lane_access import LANES, lane, put_lane
 from vssea_core.compiled import called, entry, inlined, written_out
-from vssea_core.control.law import GAINS, LAYER, POSITION_FORM, SGN, SUPER_TWISTING, VELOCITY_FORM, Law, Target
+from vssea_core.control.law import (
+    BASELINE,
+    GAINS,
+    LAYER,
+    POSITION_FORM,
+    SGN,
+    SLIDING_MODE,
+    STATE_FEEDBACK,
+    SUPER_TWISTING,
+    VELOCITY_FORM,
+    Law,
+    Target,
+)  # fmt: skip
 from vssea_core.control.observer import Channel, Memory, ObserverGains, Spring
 from vssea_core.control.packing import FIXED, MEMORY_SIZE, OBSERVER, ROW, Prepared, take_row
 from vssea_core.signals.disturbances import loads_of_step
@@ -64,7 +76,10 @@ class Variant(NamedTuple):
 
     position_form: bool
     predicts: bool
+    sliding: bool
+    encoders: bool
     friction: bool
+    stiffness_moves: bool
 
 
 @inlined
@@ -94,10 +109,11 @@ def added_up(sums, error, torque, bits, link_error, motor_error):
 
 
 @inlined
-def tuning_of(w, j, form, predict):
-    """Return the Prepared of lane `j`, with the form of its observers and whether it predicts."""
+def tuning_of(w, j, sliding, form, predict):
+    """Return the Prepared of lane `j`, with its controller, the form of its observers and whether it predicts."""
     gains, fixed = lane(w, GAINS_AT + j, GAINS), lane(w, LAW_AT + j, FIXED)
-    known = (fixed[0], switch_without_library(fixed[1]), fixed[2], fixed[3], fixed[4], form, predict)
+    controller = SLIDING_MODE if sliding else (BASELINE if fixed[0] == BASELINE else STATE_FEEDBACK)
+    known = (controller, switch_without_library(fixed[1]), fixed[2], fixed[3], fixed[4], form, predict)
     return Prepared(
         Law(*(gains + known + fixed[7:])),
         ObserverGains(*lane(w, LINK_AT + j, OBSERVER)),
@@ -138,7 +154,8 @@ def settle(w, j, plant, y, motor_torque):
     theta_ms, omega_ms = stopped(plant, theta_ms, omega_ms)
     following = PlantState(theta_l, omega_l, theta_e, omega_e, theta_ms, omega_ms, motor_torque)
     put_lane(w, STATE_AT + j, following)
-    w[GONE_AT + j] = w[GONE_AT + j] if health(following) == RUNNING else 1.0
+    (gone,) = lane(w, GONE_AT + j, 1)
+    put_lane(w, GONE_AT + j, (gone if health(following) == RUNNING else 1.0,))
 
 
 @cache
@@ -151,23 +168,25 @@ def lanes_kernel(variant: Variant) -> Callable[..., None]:
     `period` [s] are passed from sample `first` on; with `delayed` each torque acts a sample later.
     """
     form = POSITION_FORM if variant.position_form else VELOCITY_FORM
-    predicts, friction = variant.predicts, variant.friction
+    predicts, sliding, encoders = variant.predicts, variant.sliding, variant.encoders
+    friction, moves = variant.friction, variant.stiffness_moves
     predict = 1.0 if predicts else 0.0
 
     @written_out
     def begin_period(w, j, period, delayed):
         """Measure, decide, limit, and add up the sample of lane `j`; return plant, state and the torques of the period."""
-        plant, tuning = plant_of(w, j, friction), tuning_of(w, j, form, predict)
+        plant, tuning = plant_of(w, j, friction), tuning_of(w, j, sliding, form, predict)
         drives, heat = Drives(*lane(w, DRIVES_AT + j, DRIVES_SIZE)), Heat(*lane(w, HEAT_AT + j, 2))
         slew, slewed = Slew(*lane(w, SLEW_AT + j, SLEW_SIZE)), Slewed(*lane(w, SLEWED_AT + j, SLEWED_SIZE))
         now, memory = PlantState(*lane(w, STATE_AT + j, PLANT)), memory_of(w, j)
         applied_e, applied_ms, pending_e, pending_ms = lane(w, APPLIED_AT + j, 4)
         target, aim = Target(*lane(w, TARGET_AT + j, 5)), Target(*lane(w, AIM_AT + j, 5))
 
-        y = measure(Encoders(*lane(w, ENCODERS_AT + j, ENCODERS_SIZE)), Noise(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), now, 0)
+        resolution = Encoders(*lane(w, ENCODERS_AT + j, ENCODERS_SIZE)) if encoders else Encoders(0.0, 0.0, 0.0)
+        y = measure(resolution, Noise(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), now, 0)
         memory, _, slewed, rate_limited, terms = decide(
             tuning, tuning, predicts, memory, y, applied_e, applied_ms, pending_e,
-            aim, slew, slewed, w[COMMAND_AT + j], period,
+            aim, slew, slewed, moves, lane(w, COMMAND_AT + j, 1)[0], period,
         )  # fmt: skip
         torque, _, bits = limit_motor_torque(drives, heat, terms.motor_torque, now.omega_e)
         twisting = terms.twisting if bits & TORQUE_LIMITS == 0 else memory.twisting
@@ -184,8 +203,8 @@ def lanes_kernel(variant: Variant) -> Callable[..., None]:
         bits |= LEAF_TORQUE if abs(tau_s * tau_s * tau_s) > drives.leaf_cube * abs(k) else 0
         bits |= STIFFNESS_RATE if rate_limited else 0
         bits |= END_STOP if now.theta_ms <= plant.theta_ms_stiff or now.theta_ms >= plant.theta_ms_soft else 0
-        link_error = w[LINK_LOADS_AT + j] - tuning.law.link_inertia * memory.link.d
-        motor_load = w[MOTOR_LOADS_AT + j] + dry_friction(plant, now.omega_e)
+        link_error = lane(w, LINK_LOADS_AT + j, 1)[0] - tuning.law.link_inertia * memory.link.d
+        motor_load = lane(w, MOTOR_LOADS_AT + j, 1)[0] + dry_friction(plant, now.omega_e)
         motor_error = motor_load - tuning.law.motor_inertia * memory.motor.d
         sums = added_up(lane(w, SUMS_AT + j, SUMS), target.r - now.theta_l, applied_e, bits, link_error, motor_error)
         put_lane(w, SUMS_AT + j, sums)
@@ -210,9 +229,8 @@ def lanes_kernel(variant: Variant) -> Callable[..., None]:
         """Begin a period of lane `j` whose dry friction may ask for more than one step."""
         plant, now, tau_e, _ = begin_period(w, j, period, delayed)
         fineness = steps_of_period(plant, now, tau_e, period)
-        w[STEPS_AT + j] = 1.0 if fineness == 0 else (plant.substeps if fineness == 1 else plant.substeps * FINEST)
-        w[STEPS_AT + LANES + j] = float(fineness)
-        w[STEPS_AT + 2 * LANES + j] = now.motor_torque - tau_e
+        steps = 1.0 if fineness == 0 else (plant.substeps if fineness == 1 else plant.substeps * FINEST)
+        put_lane(w, STEPS_AT + j, (steps, float(fineness), now.motor_torque - tau_e))
 
     @written_out
     def next_step(w, j, step, period):
@@ -230,14 +248,15 @@ def lanes_kernel(variant: Variant) -> Callable[..., None]:
         z = dormand_prince_step(plant, None, lag, y, gap, tau_e, tau_ms, loads_l, loads_e, UNLOADED, period / steps)
         y = z if step < steps else y
         put_lane(w, STATE_AT + j, (y[0], y[3], y[1], y[4], y[2], y[5]))
-        w[STEPS_AT + 2 * LANES + j] = gap * lag.left if step < steps else gap
+        put_lane(w, STEPS_AT + 2 * LANES + j, (gap * lag.left if step < steps else gap,))
 
     @written_out
     def end_steps(w, j):
         """End the period of lane `j`."""
         now = PlantState(*lane(w, STATE_AT + j, PLANT))
         y = (now.theta_l, now.theta_e, now.theta_ms, now.omega_l, now.omega_e, now.omega_ms)
-        settle(w, j, plant_of(w, j, friction), y, w[APPLIED_AT + j] + w[STEPS_AT + 2 * LANES + j])
+        tau_e, gap = lane(w, APPLIED_AT + j, 1)[0], lane(w, STEPS_AT + 2 * LANES + j, 1)[0]
+        settle(w, j, plant_of(w, j, friction), y, tau_e + gap)
 
     def advance(w, tunings, courses, link_terms, motor_terms, which, first, count, period, delayed, scheduled):
         together = True

@@ -7,19 +7,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vssea_core.batch.lanes import Variant
-from vssea_core.control.law import GAINS, POSITION_FORM, TANH, Law
+from vssea_core.control.law import GAINS, POSITION_FORM, SLIDING_MODE, TANH, Law
 from vssea_core.control.packing import TABLE_AT
 from vssea_core.control.prepared import prepare
 from vssea_core.control.tuning import Tuning
 from vssea_core.scenario import Scenario
 from vssea_core.signals.disturbances import SINE
 from vssea_core.signals.references import reference_row
-from vssea_core.signals.stiffness import slew_row
-from vssea_core.simulation.state import DELAY_AT, DELAY_SIZE, NOISE_AT, NOISE_SIZE, Inputs, equilibrium_state, inputs_of
+from vssea_core.signals.stiffness import Slew, slew_row
+from vssea_core.simulation.state import (
+    DELAY_AT,
+    DELAY_SIZE,
+    ENCODERS_AT,
+    ENCODERS_SIZE,
+    NOISE_AT,
+    NOISE_SIZE,
+    SLEWED,
+    Inputs,
+    equilibrium_state,
+    inputs_of,
+)  # fmt: skip
 
 Numbers = NDArray[np.float64]
 KEPT = 4096
 """Prepared tunings that are kept for the runs that share them."""
+SLEW_TO = Slew._fields.index("theta_to")
 _OBSERVER_AT, _PREDICT_AT, _SWITCH_AT = (
     Law._fields.index(name) - GAINS for name in ("observer", "predict", "switch")
 )  # fmt: skip
@@ -67,15 +79,17 @@ class NumbersOf:
         period, mechanism = scenario.timing.sample_time_s, scenario.actuator.stiffness
         inputs = inputs_of(scenario)
         prepared = self._prepared_of(scenario.tuning, period, (mechanism.softest, mechanism.stiffest))
+        slew = slew_row(scenario.stiffness_reference, scenario.tuning, mechanism, period)
+        state = equilibrium_state(scenario, inputs)
         return RunNumbers(
             scenario,
             max(1, round(scenario.duration_s / period)),
             inputs,
             prepared,
             reference_row(scenario.reference),
-            slew_row(scenario.stiffness_reference, scenario.tuning, mechanism, period),
-            equilibrium_state(scenario, inputs),
-            variant_of(scenario, inputs, prepared),
+            slew,
+            state,
+            variant_of(scenario, inputs, prepared, slew, state),
         )
 
     def _prepared_of(self, tuning: Tuning, period_s: float, stiffnesses: tuple[float, float]) -> Numbers:
@@ -91,7 +105,7 @@ class NumbersOf:
         return found[1]
 
 
-def variant_of(scenario: Scenario, inputs: Inputs, prepared: Numbers) -> Variant | None:
+def variant_of(scenario: Scenario, inputs: Inputs, prepared: Numbers, slew: Numbers, state: Numbers) -> Variant | None:
     """Return the kernel in whose lanes a scenario can run; None for what few runs need, and lanes leave out."""
     rig = inputs.rig
     is_late, is_noisy = rig[DELAY_AT : DELAY_AT + DELAY_SIZE].any(), rig[NOISE_AT + NOISE_SIZE - 1] != 0.0
@@ -103,5 +117,8 @@ def variant_of(scenario: Scenario, inputs: Inputs, prepared: Numbers) -> Variant
     return Variant(
         bool(prepared[_OBSERVER_AT] == POSITION_FORM),
         bool(prepared[_PREDICT_AT]) and scenario.timing.compute_delay_samples != 0,
+        bool(prepared[0] == SLIDING_MODE),
+        bool(rig[ENCODERS_AT : ENCODERS_AT + ENCODERS_SIZE].any()),
         scenario.actuator.motor.coulomb_friction != 0.0,
+        scenario.stiffness_reference.kind != "constant" or state[SLEWED] != slew[SLEW_TO],
     )

@@ -105,8 +105,10 @@ def fastest_slew(slew, theta, tau_s):
 
 
 @inlined
-def advance_stiffness(slew, slewed, command, tau_s, sample_time_s):
+def advance_stiffness(slew, slewed, moves, command, tau_s, sample_time_s):
     """Return the StiffnessTarget of this tick, the Slewed of the next one, and whether the slew to `command` [rad] was limited.
+
+    Where the command is known never to move, `moves` is False, and only what is left in the filter goes on.
 
     The slew obeys |dk/dt| <= 3000 N m/rad/s, the motor's speed, and, under a spring torque `tau_s` [N m], the motor torque
     3 J_e tau_s theta_ms'' / (k theta_ms) that a change costs.
@@ -115,7 +117,7 @@ def advance_stiffness(slew, slewed, command, tau_s, sample_time_s):
     w, t = slew.bandwidth, sample_time_s
     theta_0, gap = slewed.command, command - slewed.command
     limited = False
-    if gap != 0.0:
+    if moves and gap != 0.0:
         farthest = t * fastest_slew(slew, theta_0, tau_s)
         limited = abs(gap) > farthest * (1.0 + 1e-9)
         if limited:

@@ -130,7 +130,7 @@ def run(
             target, aim = targets(predicts, reference, transition, changing, time, period)
             memory, stiffness_target, slewed, rate_limited, terms = decide(
                 observing, tuning, predicts, memory, y, applied_e, applied_ms, pending_e,
-                aim, slew, slewed, commanded(slew, time), period,
+                aim, slew, slewed, True, commanded(slew, time), period,
             )  # fmt: skip
             demanded = terms.motor_torque if enabled else 0.0
             torque, available, bits = limit_motor_torque(drives, heat, demanded, now.omega_e)

@@ -46,16 +46,17 @@ def targets(predicts, reference, transition, changing, time, period):
 
 @inlined
 def decide(
-    observing, tuning, predicts, memory, y, applied_e, applied_ms, coming_e, aim, slew, slewed, command, period
+    observing, tuning, predicts, memory, y, applied_e, applied_ms, coming_e, aim, slew, slewed, moves, command, period
 ):  # fmt: skip
     """Return the Memory at the Measurement `y`, the StiffnessTarget, the next Slewed, whether it was limited, and the Terms.
 
     `applied_e`, `applied_ms` [N m] acted over the period that ended, which belongs to the Prepared `observing`; `coming_e`
-    acts over the next one, where the law `predicts`. `aim` is the Target to meet, `command` the stiffness motor's [rad].
+    acts over the next one, where the law `predicts`. `aim` is the Target to meet; `command` the stiffness motor's [rad], if
+    it `moves` at all.
     """
     memory = observe(observing, memory, y, applied_e, applied_ms)
     known_torque = tuning.law.spring_constant * memory.spring.torque
-    stiffness_target, slewed, rate_limited = advance_stiffness(slew, slewed, command, known_torque, period)
+    stiffness_target, slewed, rate_limited = advance_stiffness(slew, slewed, moves, command, known_torque, period)
     if predicts:
         ahead = predicted(tuning.law, memory, coming_e, stiffness_target.r2)
         terms = act(tuning.law, ahead, aim, StiffnessTarget(slewed.theta, slewed.rate, slewed.acceleration))

@@ -106,7 +106,7 @@ def tick(
     target, aim = targets(predicts, reference, transition, is_changing(transition), time, period)
     memory, stiffness_target, slewed, rate_limited, terms = decide(
         observing, tuning, predicts, memory, y, state[KNOWN_AT], state[KNOWN_AT + 1], taken_e + added_e,
-        aim, slew, slewed, commanded(slew, time), period,
+        aim, slew, slewed, True, commanded(slew, time), period,
     )  # fmt: skip
     state[KNOWN_AT], state[KNOWN_AT + 1] = taken_e + added_e, taken_ms + added_ms
 
