@@ -16,20 +16,53 @@ class UnknownPath(ValueError):
 def set_value(document: dict[str, Any], model: type[BaseModel], path: str, value: Any) -> None:
     """Set the field at a dotted `path` of a `document` of `model`; a new kind takes its defaults and what both kinds share.
 
-    Raises UnknownPath. The value is not checked: validate the document afterwards.
+    An item of a list is named by its number, from 0. Raises UnknownPath. The value is not checked: validate the document
+    afterwards.
     """
     here: Any = document
     *parents, last = path.split(".")
     for name in parents:
-        if not isinstance(here, dict) or not isinstance(here.get(name), dict):
-            raise UnknownPath(path, list(here) if isinstance(here, dict) else [])
-        here = here[name]
-    if not isinstance(here, dict) or last not in here:
-        raise UnknownPath(path, list(here) if isinstance(here, dict) else [])
-    if last == "kind" and here["kind"] != value:
+        here = _child(here, name, path)
+    if last == "kind" and isinstance(here, dict) and here.get("kind", value) != value:
         _change_kind(here, value, model, parents)
-    else:
+    elif isinstance(here, list):
+        _child(here, last, path)
+        here[int(last)] = value
+    elif isinstance(here, dict) and last in here:
         here[last] = value
+    else:
+        raise UnknownPath(path, _names(here))
+
+
+def value_at(document: dict[str, Any], path: str) -> Any:
+    """Return what a document holds at a dotted path. Raises UnknownPath."""
+    here: Any = document
+    for name in path.split("."):
+        here = _child(here, name, path)
+    return here
+
+
+def paths_of(document: Any, prefix: str = "") -> list[str]:
+    """Return the paths of everything in a document that is no dict, such as tuning.observer.bandwidth."""
+    if isinstance(document, dict | list) and document:
+        items = document.items() if isinstance(document, dict) else enumerate(document)
+        inner = [path for name, value in items for path in paths_of(value, f"{prefix}{name}.")]
+        return inner if isinstance(document, dict) else [prefix[:-1], *inner]
+    return [prefix[:-1]]
+
+
+def _child(here: Any, name: str, path: str) -> Any:
+    if isinstance(here, dict) and name in here:
+        return here[name]
+    if isinstance(here, list) and name.isdecimal() and int(name) < len(here):
+        return here[int(name)]
+    raise UnknownPath(path, _names(here))
+
+
+def _names(here: Any) -> list[str]:
+    if isinstance(here, list):
+        return [str(place) for place in range(len(here))]
+    return list(here) if isinstance(here, dict) else []
 
 
 def set_values(document: dict[str, Any], model: type[BaseModel], changes: dict[str, Any]) -> None:
@@ -56,6 +89,8 @@ def _alternative(kind: Any, model: type[BaseModel], place: list[str]) -> type[Ba
     """Return the model of `kind` at `place`, such as tuning.observer; a reference and a disturbance both have a sine."""
     models: list[type[BaseModel]] = [model]
     for name in place:
+        if name.isdecimal():  # an item of a list: any of the models that the list may hold
+            continue
         fields = [each.model_fields[name] for each in models if name in each.model_fields]
         models = [found for field in fields for found in models_of(field.annotation)]
     kinds = {each.model_fields["kind"].default: each for each in models if "kind" in each.model_fields}

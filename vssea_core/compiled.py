@@ -39,6 +39,15 @@ def inlined(function: Kernel) -> Kernel:
     return compiled
 
 
+def written_out(function: Kernel) -> Kernel:
+    """Compile a part of a kernel as if it were written where it is called: for the body of a loop over lanes.
+
+    What is merely `inlined` is a small call to the passes that unroll loops, and they come before those that make vectors.
+    """
+    compiled: Kernel = numba.njit(inline="always", error_model="numpy")(function)
+    return compiled
+
+
 def entry(function: Kernel) -> Kernel:
     """Compile a kernel that Python calls: arrays in and out, cached on disk, without the interpreter lock."""
     compiled: Kernel = numba.njit(cache=True, nogil=True, error_model="numpy")(function)

@@ -77,16 +77,21 @@ class Scenario(Part):
 
     @model_validator(mode="after")
     def _parts_fit(self) -> Self:
-        check_observer_fits(self.tuning, self.sensors)
-        check_stiffness_fits(self.stiffness_reference, self.actuator)
-        samples = self.duration_s / self.timing.sample_time_s
-        if samples > MAX_SAMPLES:
-            raise ValueError(
-                f"duration_s {self.duration_s:g} s is {samples:.0f} samples of {self.timing.sample_time_s:g} s; "
-                f"expected at most {MAX_SAMPLES}, so shorten it or lengthen timing.sample_time_s"
-            )
-        after_changes(self)
+        check_fits(self)
         return self
+
+
+def check_fits(scenario: Scenario) -> None:
+    """Raise ValueError if the parts of a scenario, each sound by itself, do not go together."""
+    check_observer_fits(scenario.tuning, scenario.sensors)
+    check_stiffness_fits(scenario.stiffness_reference, scenario.actuator)
+    samples = scenario.duration_s / scenario.timing.sample_time_s
+    if samples > MAX_SAMPLES:
+        raise ValueError(
+            f"duration_s {scenario.duration_s:g} s is {samples:.0f} samples of {scenario.timing.sample_time_s:g} s; "
+            f"expected at most {MAX_SAMPLES}, so shorten it or lengthen timing.sample_time_s"
+        )
+    after_changes(scenario)
 
 
 def after_changes(scenario: Scenario) -> list[tuple[float, Scenario]]:

@@ -9,7 +9,7 @@ from vssea_core.actuator.parameters import StiffnessMechanism
 from vssea_core.actuator.spring import stiffness_motor_position
 from vssea_core.control.tuning import StiffnessLoop, Tuning
 from vssea_core.signals.documents import ConstantStiffness, MoveStiffness
-from vssea_core.signals.stiffness import MAX_STIFFNESS_RATE, Slew, advance_stiffness, slew_row
+from vssea_core.signals.stiffness import MAX_STIFFNESS_RATE, Slew, Slewed, advance_stiffness, commanded, slew_row
 
 T, MECHANISM = 1e-3, StiffnessMechanism()
 stiffnesses = st.floats(20.0, 1000.0)
@@ -22,8 +22,11 @@ def course(
     tuning = tuning or Tuning()
     slew = Slew(*slew_row(reference, tuning, MECHANISM, T))
     at = stiffness_motor_position(first, MECHANISM.spring_constant)
-    slewed = np.array([at, at, 0.0, 0.0])
-    targets, flags = zip(*(advance_stiffness(slew, slewed, k * T, tau_s, T) for k in range(3000)), strict=True)
+    slewed, targets, flags = Slewed(at, at, 0.0, 0.0), [], []
+    for k in range(3000):
+        target, slewed, limited = advance_stiffness(slew, slewed, True, commanded(slew, k * T), tau_s, T)
+        targets.append(target)
+        flags.append(limited)
     return np.array(targets), np.array(flags)
 
 

@@ -130,7 +130,8 @@ def dormand_prince_step(plant, met, lag, y, gap, tau_e, tau_ms, loads_l, loads_e
     `gap` is how far the motor's torque still is from `tau_e` [N m] at its start; `loads_l`, `loads_e`, `loads_ms` are the
     disturbance torques [N m] of link, motor and stiffness motor at its six instants; `met` as in `motion`.
     """
-    k1 = motion(plant, met, y, 0.0, 0.0, tau_e, tau_ms - loads_ms[0], loads_l[0], loads_e[0])
+    # Minus zero: the compiler may then leave out the sum, and sees that this spring is the one it has computed already.
+    k1 = motion(plant, met, y, -0.0, -0.0, tau_e, tau_ms - loads_ms[0], loads_l[0], loads_e[0])
     y2 = shifted_1(y, h, 1 / 5, k1)
     k2 = motion(plant, met, y2, gap * lag.q2, gap * lag.rate2, tau_e, tau_ms - loads_ms[1], loads_l[1], loads_e[1])
     y3 = shifted_2(y, h, 3 / 40, k1, 9 / 40, k2)

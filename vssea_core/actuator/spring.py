@@ -9,6 +9,10 @@ from typing import NamedTuple
 
 from vssea_core.compiled import inlined
 
+QUARTER = math.pi / 4.0
+S3, S5, S7, S9, S11, S13, S15 = (1.0 / math.factorial(n) for n in range(3, 16, 2))
+C4, C6, C8, C10, C12, C14, C16 = (1.0 / math.factorial(n) for n in range(4, 17, 2))
+
 
 class Leaf(NamedTuple):
     """The spring divided by Y_tau: a shape that holds for any plant and any model of it."""
@@ -18,18 +22,18 @@ class Leaf(NamedTuple):
     back: float  # dV/d theta_ms / Y_tau = -12 sin^2(delta/4) / theta_ms^4, pushing towards softer
 
 
-SERIES_RANGE = 0.25
-
-
 @inlined
 def sine_and_cosine(x):
-    """Return sin(x), cos(x): by their series (error below 2e-16) for |x| <= 0.25, a deflection of 1 rad, else by libm."""
-    if abs(x) > SERIES_RANGE:
-        return math.sin(x), math.cos(x)
+    """Return sin(x), cos(x) by their series, error below 2e-16; beyond pi/4, a deflection of pi, those of pi/4.
+
+    The spring's law ends there. Nothing here branches or calls a library, so that several runs can be computed side by
+    side in the lanes of a vector.
+    """
+    x = math.copysign(QUARTER, x) if abs(x) > QUARTER else x  # what is no number stays none
     s = x * x
     ss = s * s
-    sine = (1.0 - s * (1 / 6)) + ss * ((1 / 120 - s * (1 / 5040)) + ss * (1 / 362880 - s * (1 / 39916800)))
-    cosine = (1.0 - s * 0.5) + ss * ((1 / 24 - s * (1 / 720)) + ss * (1 / 40320 - s * (1 / 3628800)))
+    sine = (1.0 - s * S3) + ss * ((S5 - s * S7) + ss * ((S9 - s * S11) + ss * (S13 - s * S15)))
+    cosine = (1.0 - s * 0.5) + ss * ((C4 - s * C6) + ss * ((C8 - s * C10) + ss * ((C12 - s * C14) + ss * C16)))
     return x * sine, cosine
 
 

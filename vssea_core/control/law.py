@@ -134,14 +134,15 @@ def act(law, memory, target, stiffness_target):
     tau_s = law.spring_constant * spring.torque
     k = law.spring_constant * spring.stiffness
 
-    known_rate = law.rate_share * stiffness.omega / theta_ms
-    ms_rate = law.moving_share * stiffness.omega / theta_ms
-    ms_acceleration = law.moving_share * stiffness_target.r2 / theta_ms
+    per_theta, per_inertia = 1.0 / theta_ms, 1.0 / law.link_inertia
+    known_rate = law.rate_share * stiffness.omega * per_theta
+    ms_rate = law.moving_share * stiffness.omega * per_theta
+    ms_acceleration = law.moving_share * stiffness_target.r2 * per_theta
     deflection_rate = motor.omega - link.omega
     tau_s_rate = k * deflection_rate - 3.0 * tau_s * known_rate
-    beta = law.link_damping / law.link_inertia
-    a_l = tau_s / law.link_inertia - beta * link.omega - link.d
-    j_l = tau_s_rate / law.link_inertia - beta * a_l - link.d1
+    beta = law.link_damping * per_inertia
+    a_l = tau_s * per_inertia - beta * link.omega - link.d
+    j_l = tau_s_rate * per_inertia - beta * a_l - link.d1
 
     e1 = target.r - link.theta
     e2 = target.r1 - link.omega

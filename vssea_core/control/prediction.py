@@ -17,8 +17,8 @@ def accelerations(law, memory, stiffness_acceleration, torque, time, theta_l, om
     tau_s = law.spring_constant * leaf(theta_e - theta_l, theta_ms).torque
     d_l = link.d + time * (link.d1 + 0.5 * time * link.d2)
     d_e = motor.d + time * (motor.d1 + 0.5 * time * motor.d2)
-    a_l = (tau_s - law.link_damping * omega_l) / law.link_inertia - d_l
-    a_e = (torque - tau_s - law.motor_damping * omega_e) / law.motor_inertia - d_e
+    a_l = (tau_s - law.link_damping * omega_l) * (1.0 / law.link_inertia) - d_l
+    a_e = (torque - tau_s - law.motor_damping * omega_e) * (1.0 / law.motor_inertia) - d_e
     return a_l, a_e
 
 

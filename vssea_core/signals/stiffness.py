@@ -40,8 +40,16 @@ class Slew(NamedTuple):
     spring_constant: float
 
 
-SLEW_SIZE = len(Slew._fields)
-SLEWED_SIZE = 4  # slewed command, filter output, its rate and acceleration
+class Slewed(NamedTuple):
+    """The stiffness motor's reference between two ticks: slewed command, filter output [rad], its rate and acceleration."""
+
+    command: float
+    theta: float
+    rate: float
+    acceleration: float
+
+
+SLEW_SIZE, SLEWED_SIZE = len(Slew._fields), len(Slewed._fields)
 
 
 def slew_row(
@@ -97,29 +105,29 @@ def fastest_slew(slew, theta, tau_s):
 
 
 @inlined
-def advance_stiffness(slew, slewed, now, tau_s, sample_time_s):
-    """Return the StiffnessTarget at `now` [s] and whether its slew was limited; advance `slewed` (4) by one sample.
+def advance_stiffness(slew, slewed, moves, command, tau_s, sample_time_s):
+    """Return the StiffnessTarget of this tick, the Slewed of the next one, and whether the slew to `command` [rad] was limited.
+
+    Where the command is known never to move, `moves` is False, and only what is left in the filter goes on.
 
     The slew obeys |dk/dt| <= 3000 N m/rad/s, the motor's speed, and, under a spring torque `tau_s` [N m], the motor torque
     3 J_e tau_s theta_ms'' / (k theta_ms) that a change costs.
     """
-    target = StiffnessTarget(slewed[1], slewed[2], slewed[3])
+    target = StiffnessTarget(slewed.theta, slewed.rate, slewed.acceleration)
     w, t = slew.bandwidth, sample_time_s
-    gap = commanded(slew, now) - slewed[0]
+    theta_0, gap = slewed.command, command - slewed.command
     limited = False
-    if gap != 0.0:
-        farthest = t * fastest_slew(slew, slewed[0], tau_s)
+    if moves and gap != 0.0:
+        farthest = t * fastest_slew(slew, theta_0, tau_s)
         limited = abs(gap) > farthest * (1.0 + 1e-9)
         if limited:
             gap = math.copysign(farthest, gap)
-        slewed[0] += gap
+        theta_0 += gap
 
     shrink = slew.shrink
-    y0 = slewed[1] - slewed[0]
-    y1 = slewed[2] + w * y0
-    y2 = slewed[3] + w * (2.0 * slewed[2] + w * y0)
+    y0 = slewed.theta - theta_0
+    y1 = slewed.rate + w * y0
+    y2 = slewed.acceleration + w * (2.0 * slewed.rate + w * y0)
     y0, y1, y2 = shrink * (y0 + t * (y1 + 0.5 * t * y2)), shrink * (y1 + t * y2), shrink * y2
-    slewed[1] = slewed[0] + y0
-    slewed[2] = y1 - w * y0
-    slewed[3] = y2 - w * (2.0 * slewed[2] + w * y0)
-    return target, limited
+    rate = y1 - w * y0
+    return target, Slewed(theta_0, theta_0 + y0, rate, y2 - w * (2.0 * rate + w * y0)), limited

@@ -37,10 +37,10 @@ from vssea_core.control.packing import (
     take_row,
 )  # fmt: skip
 from vssea_core.signals.references import TRANSITION_SIZE
-from vssea_core.signals.stiffness import SLEW_SIZE, SLEWED_SIZE, Slew
+from vssea_core.signals.stiffness import SLEW_SIZE, SLEWED_SIZE, Slew, Slewed, commanded
 from vssea_core.simulation.rig_period import needs_parts
 from vssea_core.simulation.state import APPLIED, DELAYED, HEAT, MEMORY, PENDING, PLANT, SLEWED, TRANSITION, loaded_rig
-from vssea_core.tick.decision import decide, gains_at, is_changing
+from vssea_core.tick.decision import decide, gains_at, is_changing, targets
 
 RUNNING, NOT_FINITE, SPRING_LEFT, RAN_AWAY = 0, 1, 2, 3
 ENDINGS = {
@@ -100,7 +100,7 @@ def run(
     heat = Heat(state[PLANT], state[PLANT + 1])
     memory = loaded_memory(state[MEMORY : MEMORY + MEMORY_SIZE])
     transition = state[TRANSITION : TRANSITION + TRANSITION_SIZE]
-    slewed = state[SLEWED : SLEWED + SLEWED_SIZE]
+    slewed = Slewed(*to_fixed_tuple(state[SLEWED : SLEWED + SLEWED_SIZE], SLEWED_SIZE))
     on_its_way = state[DELAYED : DELAYED + DELAY_LINE]
     in_parts = needs_parts(rig, link_terms, motor_terms, stiffness_terms)
     part_lags = (rig.lags[0], rig.lags[0])
@@ -115,7 +115,7 @@ def run(
         # The gains of the next samples: of all that are left, or until those that follow the stiffness have to change. The
         # observer of the period that has just ended belongs to the tuning that was in force.
         samples = 1 if done == 0 else count - done
-        at = gains_at(memory, slewed)
+        at = gains_at(memory, slewed.command)
         observing_values = before if done == 0 else prepared
         take_row(observing_values, at, row)
         observing = loaded_prepared(observing_values, row)
@@ -123,13 +123,14 @@ def run(
         tuning = loaded_prepared(prepared, row)
         predicts = tuning.law.predict != 0.0 and rig.compute_delay != 0.0
         for i in range(done, done + samples):
-            if scheduled and gains_at(memory, slewed) != at:
+            if scheduled and gains_at(memory, slewed.command) != at:
                 break
             time = (first + i) * period
             y = measure(rig.encoders, rig.noise, now, first + i)
-            memory, target, stiffness_target, rate_limited, terms = decide(
+            target, aim = targets(predicts, reference, transition, changing, time, period)
+            memory, stiffness_target, slewed, rate_limited, terms = decide(
                 observing, tuning, predicts, memory, y, applied_e, applied_ms, pending_e,
-                reference, transition, changing, slew, slewed, time, period,
+                aim, slew, slewed, True, commanded(slew, time), period,
             )  # fmt: skip
             demanded = terms.motor_torque if enabled else 0.0
             torque, available, bits = limit_motor_torque(drives, heat, demanded, now.omega_e)
@@ -214,5 +215,7 @@ def run(
         state[PLANT + i] = heat[i]
     state[APPLIED], state[APPLIED + 1] = applied_e, applied_ms
     state[PENDING], state[PENDING + 1] = pending_e, pending_ms
+    for i in range(SLEWED_SIZE):
+        state[SLEWED + i] = slewed[i]
     keep_memory(state[MEMORY : MEMORY + MEMORY_SIZE], memory)
     return done, end

@@ -144,14 +144,14 @@ def rig_row(scenario: Scenario) -> Numbers:
 
 PLANT_SIZE, LAG_SIZE = len(Plant._fields), len(LagShares._fields)
 DRIVES_SIZE, ENCODERS_SIZE = len(Drives._fields), len(Encoders._fields)
-_FINE_AT = PLANT_SIZE + LAG_SIZE
-_FINEST_AT = _FINE_AT + LAG_SIZE
-_DRIVES_AT = _FINEST_AT + LAG_SIZE
-_ENCODERS_AT = _DRIVES_AT + DRIVES_SIZE
-_TIMING_AT = _ENCODERS_AT + ENCODERS_SIZE
+FINE_AT = PLANT_SIZE + LAG_SIZE
+FINEST_AT = FINE_AT + LAG_SIZE
+DRIVES_AT = FINEST_AT + LAG_SIZE
+ENCODERS_AT = DRIVES_AT + DRIVES_SIZE
+TIMING_AT = ENCODERS_AT + ENCODERS_SIZE
 DELAY_SIZE, NOISE_SIZE = len(Delay._fields), len(Noise._fields)
-_DELAY_AT = _TIMING_AT + 3
-_NOISE_AT = _DELAY_AT + DELAY_SIZE
+DELAY_AT = TIMING_AT + 3
+NOISE_AT = DELAY_AT + DELAY_SIZE
 
 
 @inlined
@@ -160,27 +160,29 @@ def loaded_rig(row):
     return Rig(
         Plant(*to_fixed_tuple(row[:PLANT_SIZE], PLANT_SIZE)),
         (
-            LagShares(*to_fixed_tuple(row[PLANT_SIZE:_FINE_AT], LAG_SIZE)),
-            LagShares(*to_fixed_tuple(row[_FINE_AT:_FINEST_AT], LAG_SIZE)),
-            LagShares(*to_fixed_tuple(row[_FINEST_AT:_DRIVES_AT], LAG_SIZE)),
+            LagShares(*to_fixed_tuple(row[PLANT_SIZE:FINE_AT], LAG_SIZE)),
+            LagShares(*to_fixed_tuple(row[FINE_AT:FINEST_AT], LAG_SIZE)),
+            LagShares(*to_fixed_tuple(row[FINEST_AT:DRIVES_AT], LAG_SIZE)),
         ),
-        Drives(*to_fixed_tuple(row[_DRIVES_AT:_ENCODERS_AT], DRIVES_SIZE)),
-        Encoders(*to_fixed_tuple(row[_ENCODERS_AT:_TIMING_AT], ENCODERS_SIZE)),
-        row[_TIMING_AT],
-        row[_TIMING_AT + 1],
-        row[_TIMING_AT + 2],
-        Delay(*to_fixed_tuple(row[_DELAY_AT:_NOISE_AT], DELAY_SIZE)),
-        Noise(*to_fixed_tuple(row[_NOISE_AT : _NOISE_AT + NOISE_SIZE], NOISE_SIZE)),
+        Drives(*to_fixed_tuple(row[DRIVES_AT:ENCODERS_AT], DRIVES_SIZE)),
+        Encoders(*to_fixed_tuple(row[ENCODERS_AT:TIMING_AT], ENCODERS_SIZE)),
+        row[TIMING_AT],
+        row[TIMING_AT + 1],
+        row[TIMING_AT + 2],
+        Delay(*to_fixed_tuple(row[DELAY_AT:NOISE_AT], DELAY_SIZE)),
+        Noise(*to_fixed_tuple(row[NOISE_AT : NOISE_AT + NOISE_SIZE], NOISE_SIZE)),
     )
 
 
-def equilibrium_state(scenario: Scenario) -> Numbers:
+def equilibrium_state(scenario: Scenario, inputs: Inputs | None = None) -> Numbers:
     """Return the state at rest in equilibrium under the disturbances that act at t = 0, with an unstarted controller.
+
+    `inputs` are those of the scenario, where they are known already.
 
     Raises ValueError if the spring cannot carry the link's load at this stiffness, or a motor cannot hold still.
     """
     actuator, theta_l = scenario.actuator, scenario.initial.link_position
-    mechanism, inputs = actuator.stiffness, inputs_of(scenario)
+    mechanism, inputs = actuator.stiffness, inputs or inputs_of(scenario)
     at = _initial_stiffness_motor_position(scenario)
     met_load = met_load_at_rest(inputs.link_terms, 0.0, theta_l)
     link_load = load_at(inputs.link_terms, 0.0) + met_load

@@ -14,9 +14,9 @@ from vssea_core.signals.stiffness import advance_stiffness
 
 
 @inlined
-def gains_at(memory, slewed):
+def gains_at(memory, command):
     """Return the stiffness motor position [rad] for which gains are taken: the last measured one, in steps of 1/1024 rad."""
-    theta_ms = memory.stiffness.measured if memory.spring.started != 0.0 else slewed[0]
+    theta_ms = memory.stiffness.measured if memory.spring.started != 0.0 else command
     return np.rint(theta_ms * 1024.0) / 1024.0
 
 
@@ -30,28 +30,36 @@ def is_changing(transition):
 
 
 @inlined
-def decide(
-    observing, tuning, predicts, memory, y, applied_e, applied_ms, coming_e,
-    reference, transition, changing, slew, slewed, time, period,
-):  # fmt: skip
-    """Return the Memory at the Measurement `y`, the Target, the StiffnessTarget, whether its slew was limited, and the Terms.
-
-    `applied_e`, `applied_ms` [N m] acted over the period that ended, which belongs to the Prepared `observing`; `coming_e`
-    acts over the next one, where the law `predicts`. Advances `transition` and `slewed` in place by one `period` [s].
-    """
-    memory = observe(observing, memory, y, applied_e, applied_ms)
+def targets(predicts, reference, transition, changing, time, period):
+    """Return the Target at `time` [s] and the one that the law aims at; advance `transition` in place by one `period` [s]."""
     target = reference_at(reference, time)
     if changing:
         target = with_transition(target, transition)
         decay_transition(transition, period)
+    if not predicts:
+        return target, target
+    aim = reference_at(reference, time + period)  # the torque of this tick meets the plant one sample later
+    if changing:
+        aim = with_transition(aim, transition)
+    return target, aim
+
+
+@inlined
+def decide(
+    observing, tuning, predicts, memory, y, applied_e, applied_ms, coming_e, aim, slew, slewed, moves, command, period
+):  # fmt: skip
+    """Return the Memory at the Measurement `y`, the StiffnessTarget, the next Slewed, whether it was limited, and the Terms.
+
+    `applied_e`, `applied_ms` [N m] acted over the period that ended, which belongs to the Prepared `observing`; `coming_e`
+    acts over the next one, where the law `predicts`. `aim` is the Target to meet; `command` the stiffness motor's [rad], if
+    it `moves` at all.
+    """
+    memory = observe(observing, memory, y, applied_e, applied_ms)
     known_torque = tuning.law.spring_constant * memory.spring.torque
-    stiffness_target, rate_limited = advance_stiffness(slew, slewed, time, known_torque, period)
-    if predicts:  # the torque of this tick meets the plant one sample later
-        aim = reference_at(reference, time + period)
-        if changing:
-            aim = with_transition(aim, transition)
+    stiffness_target, slewed, rate_limited = advance_stiffness(slew, slewed, moves, command, known_torque, period)
+    if predicts:
         ahead = predicted(tuning.law, memory, coming_e, stiffness_target.r2)
-        terms = act(tuning.law, ahead, aim, StiffnessTarget(slewed[1], slewed[2], slewed[3]))
+        terms = act(tuning.law, ahead, aim, StiffnessTarget(slewed.theta, slewed.rate, slewed.acceleration))
     else:
-        terms = act(tuning.law, memory, target, stiffness_target)
-    return memory, target, stiffness_target, rate_limited, terms
+        terms = act(tuning.law, memory, aim, stiffness_target)
+    return memory, stiffness_target, slewed, rate_limited, terms

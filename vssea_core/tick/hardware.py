@@ -20,10 +20,10 @@ from vssea_core.control.packing import MEMORY_SIZE, keep_memory, loaded_memory, 
 from vssea_core.control.prediction import predicted
 from vssea_core.signals.disturbances import load
 from vssea_core.signals.references import TRANSITION_SIZE, reference_at, with_transition
-from vssea_core.signals.stiffness import SLEW_SIZE, SLEWED_SIZE, Slew
+from vssea_core.signals.stiffness import SLEW_SIZE, SLEWED_SIZE, Slew, Slewed, commanded
 from vssea_core.simulation.state import DRIVES_SIZE
 from vssea_core.tick.bounds import BLENDED, BOUNDS_SIZE, RIG_STIFFNESS, Bounds
-from vssea_core.tick.decision import decide, gains_at, is_changing
+from vssea_core.tick.decision import decide, gains_at, is_changing, targets
 from vssea_core.tick.limits import Motion, limit_brake, limit_motor, limit_stiffness
 
 READING, CLOSED, BRAKING, STIFFNESS_HOLDS = 0, 1, 2, 3
@@ -68,13 +68,13 @@ def tick(
     slew = Slew(*to_fixed_tuple(slew_row, SLEW_SIZE))
     memory = loaded_memory(state[:MEMORY_SIZE])
     transition = state[TRANSITION_AT : TRANSITION_AT + TRANSITION_SIZE]
-    slewed = state[SLEWED_AT : SLEWED_AT + SLEWED_SIZE]
+    slewed = Slewed(*to_fixed_tuple(state[SLEWED_AT : SLEWED_AT + SLEWED_SIZE], SLEWED_SIZE))
     heat = Heat(state[HEAT_AT], state[HEAT_AT + 1])
     sent_e, sent_ms = state[SENT_AT], state[SENT_AT + 1]
     added_e, added_ms = state[SENT_AT + 2], state[SENT_AT + 3]
     time = sample * period
 
-    at = gains_at(memory, slewed)
+    at = gains_at(memory, slewed.command)
     take_row(before, at, gains[0])
     observing = loaded_prepared(before, gains[0])
     take_row(prepared, at, gains[1])
@@ -84,7 +84,7 @@ def tick(
         taken_e, taken_ms = sent_e, sent_ms
         theta_l, theta_e, theta_ms = state[PLACES_AT], state[PLACES_AT + 1], state[PLACES_AT + 2]
         if memory.spring.started != 0.0:
-            ahead = predicted(observing.law, memory, state[KNOWN_AT], slewed[3])
+            ahead = predicted(observing.law, memory, state[KNOWN_AT], slewed.acceleration)
             theta_l, theta_e, theta_ms = ahead.link.theta, ahead.motor.theta, ahead.stiffness.measured
     measured = math.isfinite(theta_l + theta_e + theta_ms)
     if not measured:
@@ -102,9 +102,11 @@ def tick(
 
     place = min(max(theta_ms, bounds.stop_stiff / WIDEST), bounds.stop_soft * WIDEST)  # not homed, it may be anything
     y = Measurement(theta_l, theta_e, place, omega_l, omega_e, omega_ms)
-    memory, target, stiffness_target, rate_limited, terms = decide(
-        observing, tuning, tuning.law.predict != 0.0, memory, y, state[KNOWN_AT], state[KNOWN_AT + 1], taken_e + added_e,
-        reference, transition, is_changing(transition), slew, slewed, time, period,
+    predicts = tuning.law.predict != 0.0
+    target, aim = targets(predicts, reference, transition, is_changing(transition), time, period)
+    memory, stiffness_target, slewed, rate_limited, terms = decide(
+        observing, tuning, predicts, memory, y, state[KNOWN_AT], state[KNOWN_AT + 1], taken_e + added_e,
+        aim, slew, slewed, True, commanded(slew, time), period,
     )  # fmt: skip
     state[KNOWN_AT], state[KNOWN_AT + 1] = taken_e + added_e, taken_ms + added_ms
 
@@ -207,6 +209,8 @@ def tick(
         state[:MEMORY_SIZE] = 0.0  # the observers start again from the next measurement
         finite = False
     state[FINITE_AT] = 1.0 if finite else 0.0
+    for i in range(SLEWED_SIZE):
+        state[SLEWED_AT + i] = slewed[i]
     state[HEAT_AT], state[HEAT_AT + 1] = heat.motor, heat.stiffness_motor
     state[SENT_AT], state[SENT_AT + 1] = torque, stiffness_torque
     state[SENT_AT + 2], state[SENT_AT + 3] = load_e, load_ms
