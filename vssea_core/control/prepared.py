@@ -1,6 +1,7 @@
 """From a tuning to the flat numbers of the tick."""
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -104,6 +105,7 @@ def _stiffness_observer(tuning: Tuning, sample_time_s: float) -> ObserverGains:
     return _observer_gains(plain, tuning.stiffness_loop.observer_bandwidth, rate, sample_time_s)
 
 
+@lru_cache(maxsize=4096)
 def _observer_gains(
     observer: VelocityObserver | PositionObserver, bandwidth: float, damping_rate: float, sample_time_s: float
 ) -> ObserverGains:
