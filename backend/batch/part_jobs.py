@@ -43,7 +43,7 @@ def compute_part(task: PartTask, progress: Progress) -> PartFiles | None:
     gc.disable()  # collections over the scenarios of thousands of runs would take a third of the time
     try:
         part = run_part(plan_of(task.document), task.first, task.count, lambda done: progress(done / task.count))
-        return part and part_files(part)
+        return None if part is None else part_files(part)
     finally:
         gc.enable()
         gc.collect()
