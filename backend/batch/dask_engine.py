@@ -53,11 +53,15 @@ class DaskEngine:
         """How many parts may be under way now; one, which waits, while the cluster has no worker."""
         return max(1, AHEAD * self._threads)
 
+    async def connect(self) -> None:
+        """Connect now, so that `workers` is known. Raises PartFailed if the scheduler is out of reach."""
+        await self._connected()
+
     async def run(self, part: PartTask) -> PartFiles:
         """Return a computed part. Raises PartFailed, also if the scheduler is out of reach, or WorkerLost."""
         from distributed import KilledWorker
         from distributed.client import FutureCancelledError
-        from distributed.comm import CommClosedError
+        from distributed.comm.core import CommClosedError
 
         client = await self._connected()
         future = client.submit(compute, part, key=f"vssea-part-{part.number}-{uuid4().hex}", pure=False)

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from distributed import get_worker
-from distributed.worker import thread_state
 
 from backend.batch.engine import PartFiles, PartTask
 from backend.batch.part_files import part_files
@@ -22,7 +21,8 @@ _under_way: set[int] = set()
 def compute(part: PartTask) -> PartFiles | None:
     """Return a part's files, None as soon as the scheduler wants it no longer."""
     plan = _plan_of(part.document)
-    key, worker = thread_state.key, get_worker()
+    worker = get_worker()
+    key = worker.get_current_task()
 
     def goes_on(done: int) -> bool:
         task = worker.state.tasks.get(key)
@@ -30,7 +30,7 @@ def compute(part: PartTask) -> PartFiles | None:
 
     with _no_collections():
         computed = run_part(plan, part.first, part.count, goes_on)
-    return computed and part_files(computed)
+    return None if computed is None else part_files(computed)
 
 
 def _plan_of(document: str) -> BatchPlan:

@@ -39,8 +39,8 @@ PARTS = [PartTask(DOCUMENT, number, 8 * number, 8) for number in range(12)]
 @pytest.fixture
 async def cluster() -> AsyncIterator[LocalCluster]:
     async with LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None,
-        worker_dashboard_address=None, asynchronous=True, silence_logs=50,
+        n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address="127.0.0.1:0",
+        asynchronous=True, silence_logs=50,
     ) as started:  # fmt: skip
         yield started
 
