@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 ENDED_BY_USER = 130
 """Exit status of a program that Ctrl+C has ended."""
 FORMS = (".parquet", ".csv", ".arrow")
-TOLD = ("runs", "samples", "in_lanes", "seconds", "bytes", "columns", "first", "refused")
+TOLD = ("runs", "samples", "in_lanes", "seconds", "bytes", "paths", "columns", "first", "refused")
 """What an estimate tells, as REST does."""
 
 
