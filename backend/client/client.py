@@ -41,7 +41,10 @@ class VsseaClient:
         with self._connection.opened("POST", "/api/simulate", document_of(scenario), query) as answer:
             content = answer.read()
         table = pa.csv.read_csv(pa.BufferReader(content), convert_options=pa.csv.ConvertOptions(null_values=[]))
-        return table.cast(pa.schema([(name, pa.float64()) for name in table.column_names]))
+        # Headings are such as "link_position [rad]".
+        return table.cast(pa.schema([(heading, pa.float64()) for heading in table.column_names])).rename_columns(
+            [heading.partition(" ")[0] for heading in table.column_names]
+        )
 
     def metrics(self, scenario: Any, allow_unstable: bool = False) -> Document:
         """Return metrics and limits of a scenario's run."""

@@ -181,10 +181,11 @@ def test_results_are_saved_under_their_name_once_they_are_whole(
 
 def test_a_run_is_simulated_again_from_its_scenario(fake: FakeServer, client: VsseaClient) -> None:
     fake.on("GET /api/batches/b1/runs/7/scenario", Answer({"name": "the seventh"}))
-    csv = b"time,link_position,limits\n0.0,0.1,0\n0.005,nan,1\n"
+    csv = b"time [s],link_position [rad],limits\n0.0,0.1,0\n0.005,nan,1\n"
     fake.on("POST /api/simulate?trajectory=csv&every=5&allow_unstable=true", Answer(csv, media_type="text/csv"))
     table = client.batches.simulate("b1", 7, every=5)
     assert fake.asked[-1].body == {"name": "the seventh"}
+    assert table.column_names == ["time", "link_position", "limits"]
     assert table.column("time").to_pylist() == [0.0, 0.005]
     assert {str(field.type) for field in table.schema} == {"double"}
     assert str(table.column("link_position").to_pylist()) == "[0.1, nan]"
