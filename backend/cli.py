@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from pydantic import ValidationError
 
+from backend.batch.command import batch
 from backend.emulator.commands import emulator
 from backend.refusal import refuse
 from backend.rigs.commands import rig
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 app = typer.Typer(no_args_is_help=True, help="Tune the robust position control of a variable stiffness actuator.")
 app.add_typer(emulator, name="emulator")
 app.add_typer(rig, name="rig")
+app.command()(batch)
 
 
 def _settings(**given: Any) -> "Settings":

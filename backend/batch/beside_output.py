@@ -1,0 +1,73 @@
+"""The parts of a batch that runs without a server: in a folder beside its output until that is whole.
+
+The folder holds the document and how it was divided, so that the same command goes on where it was ended.
+"""
+
+import json
+import os
+import shutil
+from pathlib import Path
+
+from backend.batch.folder import BatchFolder
+from backend.batch.result_jobs import export
+from vssea_core.compiled import cache_folder
+
+DIVIDED = "parts.json"
+FORMS = {".parquet": "parquet", ".csv": "csv", ".arrow": "arrow"}
+
+
+class BesideOutput:
+    """The parts of the table that is to become `output`, in OUTPUT.parts."""
+
+    def __init__(self, output: Path) -> None:
+        self.output, self.path = output, output.with_name(f"{output.name}.parts")
+        self.folder = BatchFolder(self.path)
+
+    @property
+    def trajectories(self) -> Path:
+        """Where the samples kept go."""
+        return self.output.with_name(f"{self.output.stem}-trajectories{self.output.suffix}")
+
+    def take_up(self, document: str, part_size: int) -> int:
+        """Make the folder, or take up the one that is there, and return the runs of its parts.
+
+        Raises ValueError if it is of another document or version, OSError.
+        """
+        version = cache_folder().name
+        if not self.path.exists():
+            new = BatchFolder(self.path.with_name(f"{self.path.name}.new"))
+            new.delete()
+            new.create(document)
+            (new.path / DIVIDED).write_text(json.dumps({"part_size": part_size, "version": version}), "utf-8")
+            new.path.rename(self.path)
+            return part_size
+        try:
+            there, divided = self.folder.document(), json.loads((self.path / DIVIDED).read_text("utf-8"))
+            size = int(divided["part_size"])
+        except (FileNotFoundError, ValueError, KeyError, TypeError) as error:
+            raise ValueError(f"{self.path} is no folder of a batch's parts; remove it, or write elsewhere") from error
+        if there != document:
+            raise ValueError(f"{self.path} holds parts of another batch; remove it, or write elsewhere")
+        if divided.get("version") != version:
+            raise ValueError(
+                f"{self.path} holds parts computed by another version of the model; remove it, or write elsewhere"
+            )
+        return size
+
+    def finish(self) -> list[Path]:
+        """Write the output, and the samples if any were kept, remove the parts, and return what was written. Raises OSError."""
+        targets = {"results": self.output} | ({"trajectories": self.trajectories} if self.folder.trajectories() else {})
+        for what, target in targets.items():
+            _, written = export(str(self.path), what, FORMS[target.suffix], str(self.path))
+            Path(written).chmod(0o666 & ~_umask())
+            Path(written).replace(target)
+        if "trajectories" not in targets:
+            self.trajectories.unlink(missing_ok=True)  # of an earlier batch with this output
+        shutil.rmtree(self.path)
+        return [*targets.values()]
+
+
+def _umask() -> int:
+    mask = os.umask(0o077)
+    os.umask(mask)
+    return mask

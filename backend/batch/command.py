@@ -1,0 +1,147 @@
+"""`vssea batch`: a batch computed here, without a server, part by part, so that it can be ended and taken up again."""
+
+import asyncio
+import json
+import os
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from pydantic import ValidationError
+
+from backend.refusal import refuse
+
+if TYPE_CHECKING:
+    from backend.batch.beside_output import BesideOutput
+    from backend.batch.engine import Engine
+
+ENDED_BY_USER = 130
+"""Exit status of a program that Ctrl+C has ended."""
+FORMS = (".parquet", ".csv", ".arrow")
+TOLD = ("runs", "samples", "in_lanes", "seconds", "bytes", "paths", "columns", "first", "refused")
+"""What an estimate tells, as REST does."""
+
+
+def batch(
+    file: Annotated[str, typer.Argument(help="Batch as JSON: a file, or - for standard input.")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", help="Table to write, a row a run: .parquet, .csv or .arrow; FILE.parquet if unset."
+        ),
+    ] = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Processes that compute; one a core if unset.")] = None,
+    dask: Annotated[
+        str | None, typer.Option(help="Compute on the cluster of this Dask scheduler, such as tcp://127.0.0.1:8786.")
+    ] = None,
+    estimate: Annotated[bool, typer.Option(help="Only tell how many runs, seconds and bytes it would take.")] = False,
+) -> None:
+    """Run a batch of scenarios here and write a row for each run; docs/batches.md says what a batch is.
+
+    Ctrl+C ends it and keeps what is done: the same command goes on from there.
+    """
+    from backend.batch.engine import PartFailed
+
+    output = output or Path(f"{'batch' if file == '-' else Path(file).stem}.parquet")
+    if output.suffix not in FORMS:
+        refuse(f"{output} cannot be written: expected a name ending in {', '.join(FORMS)}")
+    if dask is not None and workers is not None:
+        refuse("--workers is of this machine and --dask of a cluster; expected one of them")
+    document = _document(file)
+    try:
+        asyncio.run(_run(document, output, workers or os.cpu_count() or 1, dask, estimate))
+    except KeyboardInterrupt:
+        typer.echo(f"vssea: ended; {_goes_on(output)}", err=True)
+        raise typer.Exit(ENDED_BY_USER) from None
+    except PartFailed as failure:
+        refuse(f"{failure}; {_goes_on(output)}" if Path(f"{output}.parts").exists() else str(failure))
+    except ValueError as refusal:
+        refuse(str(refusal))
+    except OSError as error:
+        refuse(f"{output} cannot be written: {error}")
+
+
+async def _run(document: str, output: Path, workers: int, address: str | None, only_estimate: bool) -> None:
+    from backend.batch.beside_output import BesideOutput
+    from backend.batch.jobs import plan_batch
+
+    engine = _engine(workers, address)
+    try:
+        if address is not None:
+            await engine.connect()
+            workers = engine.workers
+        plan = plan_batch(document, workers)
+        if only_estimate:
+            typer.echo(json.dumps({name: plan[name] for name in TOLD}, indent=2, ensure_ascii=False))
+            return
+        if plan["all_refused"]:
+            refuse(f"no run of this batch can start; {plan['refused'][0]}")
+        await _compute(engine, document, plan, BesideOutput(output))
+    finally:
+        await engine.end()
+
+
+async def _compute(engine: "Engine", document: str, plan: dict[str, Any], beside: "BesideOutput") -> None:
+    from filelock import FileLock, Timeout
+
+    from backend.batch.part_run import parts_of, run_parts
+    from backend.batch.progress import Progress
+    from backend.batch.result_jobs import counts
+    from backend.batch.terminal import shown
+
+    begun_s = time.monotonic()
+    part_size = beside.take_up(document, plan["part_size"])
+    lock = FileLock(beside.path / "in-use.lock", timeout=0)
+    try:
+        lock.acquire()
+    except Timeout:
+        refuse(f"{beside.path} is in use by another vssea batch; wait for it, or write elsewhere")
+    try:
+        parts, there = parts_of(document, plan["runs"], part_size), set(beside.folder.parts())
+        progress = Progress(plan["runs"], len(parts), counts(str(beside.path)), len(there))
+        with shown(progress) as show:
+
+            async def keep(part: Any, files: Any) -> None:
+                await asyncio.to_thread(beside.folder.keep, part.number, files)
+                progress.add(files.counts)
+                show()
+
+            await run_parts(engine, [part for part in parts if part.number not in there], keep)
+    finally:
+        lock.release()
+    written = await asyncio.to_thread(beside.finish)
+    figures = {"runs": plan["runs"], **progress.counts, "seconds": round(time.monotonic() - begun_s, 1)}
+    typer.echo(json.dumps(figures | {"written": [str(path) for path in written]}, indent=2))
+
+
+def _goes_on(output: Path) -> str:
+    return f"what is done is kept in {output}.parts, and the same command goes on from there"
+
+
+def _engine(workers: int, address: str | None) -> Any:
+    if address is None:
+        from backend.batch.local_engine import LocalEngine
+
+        return LocalEngine(workers)
+    from backend.batch.dask_engine import DaskEngine
+
+    try:
+        return DaskEngine(address)
+    except ValueError as refusal:
+        refuse(str(refusal))
+
+
+def _document(file: str) -> str:
+    """Return a batch's document, whole and always written the same way."""
+    from backend.problem import from_validation
+    from vssea_core.batch.document import Batch
+
+    try:
+        text = sys.stdin.read() if file == "-" else Path(file).read_text("utf-8")
+        return Batch.model_validate_json(text).model_dump_json()
+    except ValidationError as error:
+        refuse(from_validation(error, Batch).detail)
+    except (OSError, UnicodeDecodeError) as error:
+        refuse(f"{file} cannot be read: {error}; expected the file of a batch as JSON")

@@ -1,0 +1,263 @@
+"""`vssea batch`: the rows of the batch in each form, taken up again after any end, and one sentence for whatever is wrong."""
+
+import asyncio
+import json
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.csv
+import pyarrow.ipc
+import pyarrow.parquet as pq
+import pytest
+from distributed import LocalCluster
+from typer.testing import CliRunner, Result
+
+from backend.batch import local_engine, part_jobs
+from backend.batch.dask_engine import DaskEngine
+from backend.batch.engine import PartFailed, PartFiles, PartTask
+from backend.batch.part_files import part_files
+from backend.batch.progress import Progress
+from backend.batch.terminal import words
+from backend.cli import app
+from tests.backend.server import free_port
+from vssea_core.actuator.parameters import Sensors
+from vssea_core.batch.document import Batch, Grid, Keep
+from vssea_core.batch.part import run_part
+from vssea_core.batch.plan import BatchPlan
+from vssea_core.scenarios import NOMINAL
+
+NOISY = NOMINAL.model_copy(update={"duration_s": 0.1, "sensors": Sensors(velocity_noise=0.1)})
+BATCH = Batch(
+    scenario=NOISY,
+    vary=(Grid(path="actuator.link.inertia", low=0.5, high=2.0, count=40, factor=True),),
+    noise="own",
+    keep=Keep(trajectories="all", every=50),
+)  # parts of 16, 16 and 8 runs
+READ = {
+    ".parquet": pq.read_table,
+    ".csv": pyarrow.csv.read_csv,
+    ".arrow": lambda path: pa.ipc.open_file(path).read_all(),
+}
+
+
+class Here:
+    """An engine in this process; `before` is called with the number of each part."""
+
+    name, workers = "here", 1
+
+    def __init__(self, workers: int) -> None:
+        self.computed: list[int] = []
+        self.before = lambda number: None
+        self.ended = False
+
+    async def run(self, part: PartTask) -> PartFiles:
+        self.before(part.number)
+        await asyncio.sleep(0)  # where the end of the program is noticed
+        self.computed.append(part.number)
+        computed = run_part(part_jobs.plan_of(part.document), part.first, part.count)
+        assert computed is not None
+        return part_files(computed)
+
+    def process_ids(self) -> list[int]:
+        return []
+
+    async def end(self) -> None:
+        self.ended = True
+
+
+@pytest.fixture
+def here(monkeypatch: pytest.MonkeyPatch) -> Here:
+    engine = Here(1)
+    monkeypatch.setattr(local_engine, "LocalEngine", lambda workers: engine)
+    return engine
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    written = tmp_path / "batch.json"
+    written.write_text(BATCH.model_dump_json(), "utf-8")
+    return written
+
+
+def vssea(*arguments: Any, stdin: str = "") -> Result:
+    return CliRunner().invoke(app, ["batch", *map(str, arguments)], input=stdin)
+
+
+def expected() -> dict[str, list[Any]]:
+    part = run_part(BatchPlan(BATCH), 0, 40)
+    assert part is not None
+    return {name: [*column] for name, column in part.rows.items()}
+
+
+@pytest.mark.parametrize("suffix", READ)
+def test_each_form_has_a_row_a_run_and_the_samples_that_were_asked_for(here: Here, file: Path, suffix: str) -> None:
+    output = file.with_name(f"out{suffix}")
+    outcome = vssea(file, "-o", output)
+    assert outcome.exit_code == 0, outcome.stderr
+    samples = file.with_name(f"out-trajectories{suffix}")
+    told = json.loads(outcome.stdout)
+    assert told | {"seconds": 0} == {
+        "runs": 40, "done": 40, "ended": 0, "refused": 0, "seconds": 0, "written": [str(output), str(samples)]
+    }  # fmt: skip
+    rows = READ[suffix](output).to_pydict()
+    if suffix == ".csv":
+        rows["reason"] = [reason or "" for reason in rows["reason"]]
+    assert rows == expected()
+    assert READ[suffix](samples).column_names == ["run", "time", "reference", "link_position", "motor_torque"]
+    assert READ[suffix](samples).num_rows == 40 * 2
+    assert sorted(path.name for path in file.parent.iterdir()) == [
+        "batch.json",
+        f"out-trajectories{suffix}",
+        f"out{suffix}",
+    ]
+    assert here.ended
+
+
+def test_ctrl_c_keeps_what_is_done_and_the_same_command_goes_on(here: Here, file: Path) -> None:
+    output = file.with_name("out.parquet")
+    here.before = lambda number: signal.raise_signal(signal.SIGINT) if number == 1 else None
+    outcome = vssea(file, "-o", output)
+    assert outcome.exit_code == 130
+    assert outcome.stderr == (
+        f"vssea: ended; what is done is kept in {output}.parts, and the same command goes on from there\n"
+    )
+    assert not output.exists()
+    assert (here.computed, here.ended) == ([0], True)
+    here.before = lambda number: None
+    assert vssea(file, "-o", output, "--workers", 2).exit_code == 0
+    assert here.computed == [0, 1, 2]
+    assert pq.read_table(output).to_pydict() == expected()
+    assert not output.with_name("out.parquet.parts").exists()
+
+
+def test_a_part_that_keeps_failing_is_told_and_what_is_done_is_kept(here: Here, file: Path) -> None:
+    def fail(number: int) -> None:
+        if number == 1:
+            raise PartFailed("out of memory")
+
+    here.before = fail
+    outcome = vssea(file, "-o", file.with_name("out.csv"))
+    assert outcome.exit_code == 2
+    assert outcome.stderr == (
+        "vssea: part 1 failed 3 times: out of memory; "
+        f"what is done is kept in {file.with_name('out.csv')}.parts, and the same command goes on from there\n"
+    )
+    assert file.with_name("out.csv.parts").joinpath("part-00000.parquet").exists()
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda parts: (parts / "batch.json").write_text("{}"), "holds parts of another batch"),
+        (lambda parts: (parts / "parts.json").unlink(), "is no folder of a batch's parts"),
+        (lambda parts: (parts / "parts.json").write_text('{"part_size": 16, "version": "1"}'), "by another version"),
+    ],
+    ids=["another document", "no parts", "another version"],
+)
+def test_parts_of_something_else_are_never_taken_up_or_removed(here: Here, file: Path, change: Any, words: str) -> None:
+    output = file.with_name("out.parquet")
+    here.before = lambda number: signal.raise_signal(signal.SIGINT) if number == 1 else None
+    vssea(file, "-o", output)
+    parts = output.with_name("out.parquet.parts")
+    change(parts)
+    before = {path.name: path.read_bytes() for path in parts.iterdir()}
+    outcome = vssea(file, "-o", output)
+    assert outcome.exit_code == 2
+    assert f"{words}" in outcome.stderr
+    assert "remove it, or write elsewhere" in outcome.stderr
+    assert {path.name: path.read_bytes() for path in parts.iterdir()} == before
+    assert here.computed == [0]
+
+
+def test_without_an_output_the_table_is_named_after_the_file(
+    here: Here, file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(file.parent)
+    assert vssea(file).exit_code == 0
+    assert pq.read_table(file.with_name("batch.parquet")).num_rows == 40
+    assert vssea("-", "-o", "other.csv", stdin=file.read_text("utf-8")).exit_code == 0
+    assert pyarrow.csv.read_csv(file.with_name("other.csv")).num_rows == 40
+
+
+def test_an_estimate_is_told_and_nothing_is_written(here: Here, file: Path) -> None:
+    outcome = vssea(file, "--estimate", "-o", file.with_name("out.parquet"))
+    assert outcome.exit_code == 0, outcome.stderr
+    told = json.loads(outcome.stdout)
+    assert (told["runs"], told["samples"], told["in_lanes"], told["refused"]) == (40, 4000, 0.0, [])
+    assert [each["actuator.link.inertia"] for each in told["first"]] == expected()["actuator.link.inertia"][:3]
+    assert here.computed == []
+    assert [path.name for path in file.parent.iterdir()] == ["batch.json"]
+
+
+HEAVY = json.dumps({"vary": [{"kind": "list", "path": "timing.sample_time_s", "values": [-1.0, -2.0]}]})
+
+
+@pytest.mark.parametrize(
+    ("arguments", "stdin", "words"),
+    [
+        (["nothing.json"], "", "nothing.json cannot be read"),
+        (["-"], "{", "not JSON"),
+        (["-"], '{"varied": []}', "unknown name"),
+        (["-"], '{"vary": [{"kind": "grid", "path": "seed", "low": 0}]}', "it is missing"),
+        (
+            ["-"],
+            '{"vary": [{"kind": "grid", "path": "tuning.observer.bandwith", "low": 1, "high": 2}]}',
+            "vary: tuning.observer.bandwith is no field of the scenario; nearest: tuning.observer.bandwidth",
+        ),
+        (["-"], HEAVY, "no run of this batch can start; Run 0: "),
+        (["-", "-o", "out.xlsx"], "{}", "expected a name ending in .parquet, .csv, .arrow"),
+        (["-", "-o", "no/such/folder/out.csv"], "{}", "no/such/folder/out.csv cannot be written"),
+        (["-", "--dask", "somewhere"], "{}", "is no address of a Dask scheduler"),
+        (["-", "--dask", "tcp://127.0.0.1:1", "--workers", "2"], "{}", "expected one of them"),
+    ],
+    ids=str,
+)
+def test_what_is_wrong_is_told_in_one_sentence(
+    here: Here, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], stdin: str, words: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "no").write_text("a file instead of a folder")
+    outcome = vssea(*arguments, stdin=stdin)
+    assert outcome.exit_code == 2
+    assert outcome.stdout == ""
+    assert outcome.stderr.startswith("vssea: ")
+    assert words in outcome.stderr
+    assert outcome.stderr.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["no"]
+
+
+def test_a_scheduler_out_of_reach_is_told_before_anything_is_written(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    address = f"tcp://127.0.0.1:{free_port()}"
+    monkeypatch.setattr("backend.batch.dask_engine.DaskEngine", lambda given: DaskEngine(given, connect_limit_s=0.2))
+    outcome = vssea(file, "-o", file.with_name("out.parquet"), "--dask", address)
+    assert outcome.exit_code == 2
+    assert outcome.stderr.startswith(f"vssea: no Dask scheduler answers at {address}; start one with `dask scheduler`")
+    assert [path.name for path in file.parent.iterdir()] == ["batch.json"]
+
+
+@pytest.fixture
+def cluster() -> Iterator[LocalCluster]:
+    with LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address="127.0.0.1:0",
+        silence_logs=50,
+    ) as started:  # fmt: skip
+        yield started
+
+
+def test_a_cluster_gives_the_same_table(file: Path, cluster: LocalCluster) -> None:
+    outcome = vssea(file, "-o", file.with_name("out.parquet"), "--dask", cluster.scheduler_address)
+    assert outcome.exit_code == 0, outcome.stderr
+    assert pq.read_table(file.with_name("out.parquet")).to_pydict() == expected()
+
+
+def test_the_bar_says_how_fast_it_is_and_how_long_it_will_take() -> None:
+    times = iter([0.0, 4.0, 4.0, 4.0, 4.0, 4.0])
+    progress = Progress(10_000, 5, {}, 0, lambda: next(times))
+    assert words(progress) == "0 of 10,000 runs, starting"
+    progress.add({"done": 1990, "ended": 8, "refused": 2})
+    assert words(progress) == "2,000 of 10,000 runs, 8 ended, 2 refused, 500 runs/s, 0:00:16 left"
