@@ -3,6 +3,7 @@
 import copy
 import difflib
 import json
+import math
 from collections.abc import Iterator
 from contextlib import suppress
 from functools import cached_property
@@ -27,7 +28,7 @@ class BatchPlan:
         self._document = batch.scenario.model_dump(mode="json")
         self._columns = [self._columns_of(variation, place) for place, variation in enumerate(batch.vary)]
         self._lengths = [count_of(variation) for variation in batch.vary]
-        self.count = int(np.prod(self._lengths, dtype=np.int64)) if self._lengths else 1
+        self.count = math.prod(self._lengths)
         self.paths = tuple(path for columns in self._columns for path in columns)
         self.types = {path: _type_of(column) for columns in self._columns for path, column in columns.items()}
         """What a column of values is: whole numbers, numbers, or text (with JSON for what is neither)."""
