@@ -13,6 +13,7 @@ from starlette.staticfiles import StaticFiles
 
 from backend.api.actuators import actuator_routes
 from backend.api.analysis import analysis
+from backend.api.batches import batch_routes
 from backend.api.documentation import documentation
 from backend.api.export import export
 from backend.api.guard import Guard
@@ -23,6 +24,7 @@ from backend.api.recording_origins import recording_origin_routes
 from backend.api.recordings import recording_routes
 from backend.api.resources import resources
 from backend.api.rigs import rig_routes
+from backend.batch.start import ServedBatches
 from backend.compute.pool import Pool
 from backend.processes import set_niceness
 from backend.recordings.catalogue import Catalogue
@@ -53,6 +55,8 @@ def create_app(settings: Settings) -> FastAPI:
     rigs = RigLibrary(settings.rigs_folder)
     session = Session(settings, pool, database, recorder, recorder, Excerpts(database), rigs)
     library = Library(settings, Catalogue(database), recorder, pool.archive)
+    batches = ServedBatches(settings, database)
+    pool.also(batches.process_ids)
     scene = SceneProcess(session.ring_name)
     replay = ReplayScene()
     answers = tempfile.TemporaryDirectory(prefix="vssea-")
@@ -63,6 +67,7 @@ def create_app(settings: Settings) -> FastAPI:
         session.start()
         recorder.start(session.ring_name, session.tell, session.note_recording, library.added)
         library.start(session.recordings_changed, session.note_recording)
+        batches.start(session.tell)
         if settings.scene:
             scene.start()
         gc.collect()
@@ -74,6 +79,7 @@ def create_app(settings: Settings) -> FastAPI:
         await library.stop()
         await recorder.stop()
         await session.close()
+        await batches.stop()
         await tasks.stop()
         await pool.stop()
         database.close()
@@ -91,6 +97,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.include_router(rig_routes(session, pool, rigs))
     app.include_router(analysis(session, pool, tasks, answers.name))
     app.include_router(export(session, pool))
+    app.include_router(batch_routes(batches, pool, answers.name))
     app.include_router(recording_origin_routes(pool, tasks, library, answers.name))
     app.include_router(recording_routes(session, pool, library, replay if settings.scene else None, answers.name))
     app.include_router(live(session, recorder))

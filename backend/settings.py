@@ -44,6 +44,19 @@ class Settings(BaseSettings):
     )
     recording_part_minutes: float = Field(60.0, gt=0.0, description="A longer run is recorded in parts of this length.")
 
+    batches_dir: Path | None = Field(
+        None, description="Where batches and their results are kept; `batches` in the data folder if unset."
+    )
+    batch_workers: int | None = Field(
+        None, ge=1, le=1024, description="Processes that compute batches; as many as the machine has cores if unset."
+    )
+    batch_most_runs: int = Field(1_000_000, ge=1, le=10_000_000, description="Most runs that a batch may have.")
+    batch_most_gb: float = Field(20.0, gt=0.0, description="Most that the results of one batch may take.")
+    batch_waiting: int = Field(16, ge=1, le=1000, description="Most batches that may wait for their turn.")
+    batch_engine: str | None = Field(
+        None, description="Where batches are computed: the address of a Dask scheduler; this machine if unset."
+    )
+
     @field_validator("scenario")
     @classmethod
     def _known_scenario(cls, name: str) -> str:
@@ -74,6 +87,11 @@ class Settings(BaseSettings):
     def recordings_folder(self) -> Path:
         """Folder of the recordings."""
         return self.recordings_dir or self.data_dir / "recordings"
+
+    @property
+    def batches_folder(self) -> Path:
+        """Folder of the batches."""
+        return self.batches_dir or self.data_dir / "batches"
 
     @property
     def rigs_folder(self) -> Path:

@@ -23,6 +23,10 @@ class JobFailedError(RuntimeError):
     """The worker died, ran out of time, or failed in a way that is not the user's doing."""
 
 
+class WorkerLostError(JobFailedError):
+    """The worker died; the next job starts another one."""
+
+
 class JobCancelledError(RuntimeError):
     """The job was ended because it was no longer wanted."""
 
@@ -106,7 +110,7 @@ class Worker:
                 kind, content = await asyncio.to_thread(exchange)
         except (EOFError, OSError) as broken:
             await self._end()
-            raise JobFailedError(f"the {self._name} process ended unexpectedly; try again") from broken
+            raise WorkerLostError(f"the {self._name} process ended unexpectedly; try again") from broken
         except TimeoutError as late:
             await self._end()
             raise JobFailedError(
@@ -151,14 +155,20 @@ class Pool:
         self.recordings = Worker("vssea recordings", "", niceness=12, jobs="backend.recordings.jobs")
         self.archive = Worker("vssea archive", "", niceness=13, jobs="backend.recordings.jobs")
         self.rig_check = Worker("vssea rig check", "", niceness=5, jobs="backend.compute.rig_jobs")
+        self._further: list[Callable[[], list[int]]] = []
 
     @property
     def _workers(self) -> tuple[Worker, ...]:
         return self.design, self.analysis, self.simulation, self.tasks, self.recordings, self.archive, self.rig_check
 
     def process_ids(self) -> list[int]:
-        """Return the numbers of the processes that run."""
-        return [worker.process_id for worker in self._workers if worker.process_id is not None]
+        """Return the numbers of the processes that run, those of others with the same rights included."""
+        own = [worker.process_id for worker in self._workers if worker.process_id is not None]
+        return own + [number for others in self._further for number in others()]
+
+    def also(self, process_ids: Callable[[], list[int]]) -> None:
+        """Count the processes of others among the workers: what keeps workers off a core then keeps them off, too."""
+        self._further.append(process_ids)
 
     async def stop(self) -> None:
         """End all of them."""

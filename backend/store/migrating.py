@@ -9,7 +9,7 @@ import sqlalchemy as sa
 
 from backend.store.troubles import newer
 
-REVISIONS = ("0001", "0002")
+REVISIONS = ("0001", "0002", "0003")
 """All that this version knows, oldest first; migrations/versions has one module for each."""
 HEAD = REVISIONS[-1]
 UNVERSIONED = "0001"

@@ -73,3 +73,20 @@ EXCERPTS = sa.Table(
     sa.Column("shown", sa.Boolean, nullable=False),
     sa.Column("data", sa.Text),
 )  # fmt: skip
+BATCHES = sa.Table(
+    "batches", METADATA,
+    sa.Column("id", sa.String(40), primary_key=True),
+    sa.Column("name", sa.String(80), nullable=False),
+    sa.Column("key", sa.String(200), unique=True),
+    sa.Column("digest", sa.String(64), nullable=False),
+    sa.Column("state", sa.String(20), nullable=False),
+    sa.Column("created_at", sa.String(40), nullable=False),
+    sa.Column("started_at", sa.String(40)),
+    sa.Column("ended_at", sa.String(40)),
+    sa.Column("seconds", sa.Float, nullable=False),
+    sa.Column("runs", sa.Integer, nullable=False),
+    sa.Column("part_size", sa.Integer, nullable=False),
+    sa.Column("summary", sa.Text, nullable=False),
+    sa.Column("reason", sa.Text, nullable=False),
+)  # fmt: skip
+"""`key` and `digest` tell a batch that is asked for twice from another one; `summary` is what is known of it, as JSON."""

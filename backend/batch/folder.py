@@ -1,0 +1,86 @@
+"""The files of one batch: its document, and two files a part at most. A file that is there is whole."""
+
+import os
+import shutil
+from pathlib import Path
+
+from backend.batch.engine import PartFiles
+
+DOCUMENT, ROWS, TRAJECTORIES = "batch.json", "part", "trajectories"
+UNFINISHED = ".new"
+
+
+class BatchFolder:
+    """The folder of a batch. Its methods block for a moment; the web process calls them in threads."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def create(self, document: str) -> None:
+        """Make the folder with the batch's document in it. Raises OSError."""
+        self.path.mkdir(parents=True)
+        self._write(DOCUMENT, document.encode())
+
+    @property
+    def document_path(self) -> Path:
+        """Where the batch's document is."""
+        return self.path / DOCUMENT
+
+    def document(self) -> str:
+        """Return the batch's document as JSON. Raises OSError."""
+        return self.document_path.read_text("utf-8")
+
+    def keep(self, number: int, files: PartFiles) -> int:
+        """Keep a part and return its bytes; its rows come last, so that they stand for all of it. Raises OSError."""
+        if files.trajectories:
+            self._write(_name(TRAJECTORIES, number), files.trajectories)
+        self._write(_name(ROWS, number), files.rows)
+        return len(files.rows) + len(files.trajectories)
+
+    def parts(self) -> list[int]:
+        """Return the numbers of the parts that are there, in order."""
+        return _numbers(self.path, ROWS)
+
+    def rows_of(self, number: int) -> Path:
+        """Return where the rows of a part are."""
+        return self.path / _name(ROWS, number)
+
+    def trajectories(self) -> list[Path]:
+        """Return the files of samples of the parts that are there, in order."""
+        paths = [self.path / _name(TRAJECTORIES, number) for number in self.parts()]
+        return [path for path in paths if path.exists()]
+
+    def size(self) -> int:
+        """Return the bytes of all files."""
+        return sum(path.stat().st_size for path in self.path.iterdir())
+
+    def delete(self) -> None:
+        """Remove all of it."""
+        shutil.rmtree(self.path, ignore_errors=True)
+
+    def _write(self, name: str, content: bytes) -> None:
+        unfinished = self.path / f"{name}{UNFINISHED}"
+        with unfinished.open("wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        unfinished.replace(self.path / name)
+        _sync_folder(self.path)
+
+
+def _name(kind: str, number: int) -> str:
+    return f"{kind}-{number:05d}.parquet"
+
+
+def _numbers(folder: Path, kind: str) -> list[int]:
+    return sorted(int(path.stem.removeprefix(f"{kind}-")) for path in folder.glob(f"{kind}-*.parquet"))
+
+
+def _sync_folder(folder: Path) -> None:
+    if os.name == "nt":
+        return  # there a folder cannot be opened, and needs no flush
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,31 @@
+"""A batch as REST gives it."""
+
+from typing import Any
+
+from backend.batch.catalogue import Row
+from backend.batch.progress import STATES, Progress
+
+
+def listed(row: Row, progress: Progress | None = None) -> dict[str, Any]:
+    """Return the document of docs/protocol.md; `progress` is that of a batch that runs."""
+    found = row.summary
+    return {
+        "id": row.id, "name": row.name, "description": found["description"], "state": row.state, "reason": row.reason,
+        "created_at": row.created_at, "started_at": row.started_at, "ended_at": row.ended_at, "seconds": row.seconds,
+        "engine": found["engine"], "runs": row.runs, "parts": row.parts, "part_size": row.part_size,
+        "paths": found["paths"], "columns": found["columns"], "trajectories": found["trajectories"],
+        **(_kept(row) if progress is None else progress.document()),
+    }  # fmt: skip
+
+
+def _kept(row: Row) -> dict[str, Any]:
+    """Return what Progress.document does, of a batch that does not run."""
+    counts = row.summary.get("counts", dict.fromkeys(STATES, 0))
+    done = sum(counts.values())
+    return {
+        "progress": {
+            "done": done, "runs": row.runs, "parts_done": row.summary.get("parts_done", 0), "parts": row.parts,
+            "share": done / row.runs,
+        },
+        "counts": counts, "rate": row.summary.get("rate"), "seconds_left": None,
+    }  # fmt: skip

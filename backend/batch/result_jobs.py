@@ -1,0 +1,112 @@
+"""What reads the results of batches: pages, rows, whole files, from the parts that are there. Needs no compiler."""
+
+import json
+import math
+import tempfile
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.csv
+import pyarrow.ipc
+import pyarrow.parquet as pq
+
+from backend.batch.folder import BatchFolder
+
+LONG: frozenset[str] = frozenset()
+MEDIA_TYPES = {
+    "parquet": "application/vnd.apache.parquet",
+    "csv": "text/csv; charset=utf-8",
+    "arrow": "application/vnd.apache.arrow.file",
+}
+
+
+def counts(folder: str) -> dict[str, int]:
+    """Return how many runs there are by state, in the parts that are there."""
+    found = Counter[str]()
+    for table in _tables(_rows_in(folder), ["state"]):
+        found.update(table["state"].to_pylist())
+    return dict(found)
+
+
+def page(folder: str, offset: int, limit: int, columns: list[str] | None) -> bytes:
+    """Return rows `offset` to `offset + limit` of those that are there, as JSON. Raises ValueError for an unknown column."""
+    total, names, rows = 0, columns, list[tuple[Any, ...]]()
+    for path in _rows_in(folder):
+        count = pq.read_metadata(path).num_rows
+        first, last = max(0, offset - total), min(count, offset + limit - total)
+        if first < last or names is None or total == 0:
+            table = _read(path, columns)
+            names = table.column_names
+            rows += _listed(table.slice(first, max(0, last - first)))
+        total += count
+    answer = {"offset": offset, "total": total, "columns": names or [], "rows": rows}
+    return json.dumps(answer, ensure_ascii=False, allow_nan=False).encode()
+
+
+def row(folder: str, run: int, part: int) -> dict[str, Any] | None:
+    """Return the row of a run by column, None if its part is not there yet."""
+    path = BatchFolder(Path(folder)).rows_of(part)
+    if not path.exists():
+        return None
+    table = pq.read_table(path, filters=[("run", "=", run)])
+    return dict(zip(table.column_names, _listed(table)[0], strict=True))
+
+
+def export(folder: str, what: str, form: str, target: str) -> tuple[str, str]:
+    """Return media type and path, in the folder `target`, of all rows or trajectories, in the order of runs.
+
+    Raises ValueError if there is nothing yet.
+    """
+    paths = _rows_in(folder) if what == "results" else BatchFolder(Path(folder)).trajectories()
+    if not paths:
+        raise ValueError(f"there are no {what} yet; wait for the first part that has any")
+    with tempfile.NamedTemporaryFile(dir=target, suffix=f".{form}", delete=False) as file:
+        written = Path(file.name)
+    try:
+        _write(form, pq.read_schema(paths[0]), _tables(paths, None), str(written))
+    except BaseException:
+        written.unlink(missing_ok=True)
+        raise
+    return MEDIA_TYPES[form], str(written)
+
+
+def _rows_in(folder: str) -> list[Path]:
+    batch = BatchFolder(Path(folder))
+    return [batch.rows_of(number) for number in batch.parts()]
+
+
+def _tables(paths: Iterable[Path], columns: list[str] | None) -> Iterator[pa.Table]:
+    for path in paths:
+        yield pq.read_table(path, columns=columns)
+
+
+def _read(path: Path, columns: list[str] | None) -> pa.Table:
+    known = pq.read_schema(path).names
+    unknown = [name for name in columns or () if name not in known]
+    if unknown:
+        raise ValueError(f"there is no column {unknown[0]!r}; known here: {', '.join(known)}")
+    return pq.read_table(path, columns=columns)
+
+
+def _listed(table: pa.Table) -> list[tuple[Any, ...]]:
+    columns = [[_plain(value) for value in column.to_pylist()] for column in table.columns]
+    return list(zip(*columns, strict=True))
+
+
+def _plain(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _write(form: str, schema: pa.Schema, tables: Iterable[pa.Table], path: str) -> None:
+    if form == "parquet":
+        writer: Any = pq.ParquetWriter(path, schema, compression="zstd")
+    elif form == "arrow":
+        writer = pyarrow.ipc.new_file(path, schema)
+    else:
+        writer = pyarrow.csv.CSVWriter(path, schema)
+    with writer:
+        for table in tables:
+            writer.write_table(table)

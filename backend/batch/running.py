@@ -1,0 +1,114 @@
+"""One batch while it runs: the parts that are missing are computed and kept, until all are there or it is cancelled."""
+
+import asyncio
+import logging
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, Protocol
+
+from backend.batch.catalogue import Row
+from backend.batch.engine import Engine, PartFailed, PartFiles, PartTask
+from backend.batch.folder import BatchFolder
+from backend.batch.limits import Limits, TooLarge
+from backend.batch.listed import listed
+from backend.batch.part_run import parts_of, run_parts
+from backend.batch.progress import Progress
+from backend.compute.pool import JobFailedError, JobRefusedError
+
+logger = logging.getLogger(__name__)
+
+
+class Results(Protocol):
+    """Where results are read: a worker process."""
+
+    async def run(self, job: str, *arguments: Any, time_limit_s: float = 60.0) -> Any:
+        """Return what the job returns."""
+
+
+class Running:
+    """Runs a batch once; `changed` is called after every part."""
+
+    def __init__(
+        self,
+        row: Row,
+        folder: BatchFolder,
+        engine: Engine,
+        results: Results,
+        limits: Limits,
+        changed: Callable[[], None],
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.row, self._folder, self._engine, self._results = row, folder, engine, results
+        self._limits, self._changed, self._clock = limits, changed, clock
+        self._begun_s = clock()
+        self._size = 0
+        self._work: asyncio.Task[None] | None = None
+        self._is_cancelled = False
+        self.progress = Progress(row.runs, row.parts, {}, 0, clock)
+        self.ended = asyncio.Event()
+        """Set when what became of it is kept."""
+
+    def document(self) -> dict[str, Any]:
+        """Return it as REST gives it."""
+        return listed(self.so_far(), self.progress)
+
+    def so_far(self) -> Row:
+        """Return its row with what is known now."""
+        facts = {
+            "counts": dict(self.progress.counts), "parts_done": self.progress.parts_done, "rate": self.progress.rate,
+            "engine": self._engine.name,
+        }  # fmt: skip
+        seconds = self.row.seconds + self._clock() - self._begun_s if self.row.state == "running" else self.row.seconds
+        return replace(self.row, seconds=seconds, summary=self.row.summary | facts)
+
+    def cancel(self) -> None:
+        """End the parts under way; those that are done stay."""
+        self._is_cancelled = True
+        if self._work is not None:
+            self._work.cancel()
+
+    async def run(self) -> None:
+        """Compute what is missing; `row` then says what became of it. Cancelled, it ends the parts under way first."""
+        self._work = asyncio.create_task(self._compute())
+        if self._is_cancelled:
+            self._work.cancel()
+        try:
+            await asyncio.wait({self._work})
+        except asyncio.CancelledError:
+            self._work.cancel()
+            await asyncio.wait({self._work})
+            raise
+        state, reason = self._outcome(self._work)
+        self.row = replace(self.so_far(), state=state, reason=reason)
+
+    async def _compute(self) -> None:
+        document = await asyncio.to_thread(self._folder.document)
+        there = set(await asyncio.to_thread(self._folder.parts))
+        if there:
+            counts = await self._results.run("counts", str(self._folder.path))
+            self._size = await asyncio.to_thread(self._folder.size)
+            self.progress = Progress(self.row.runs, self.row.parts, counts, len(there), self._clock)
+        missing = [part for part in parts_of(document, self.row.runs, self.row.part_size) if part.number not in there]
+        await run_parts(self._engine, missing, self._keep)
+
+    async def _keep(self, part: PartTask, files: PartFiles) -> None:
+        self._size += await asyncio.to_thread(self._folder.keep, part.number, files)
+        self.progress.add(files.counts)
+        self._changed()
+        self._limits.check_kept(self._size)
+
+    def _outcome(self, work: asyncio.Task[None]) -> tuple[str, str]:
+        if work.cancelled():
+            return "cancelled", ""
+        match work.exception():
+            case None:
+                return "done", ""
+            case PartFailed() | TooLarge() | JobFailedError() | JobRefusedError() as failure:
+                reason = str(failure)
+            case OSError() as failure:
+                reason = f"{self._folder.path} cannot be read or written: {failure.strerror or failure}"
+            case failure:
+                logger.error("batch %s failed", self.row.id, exc_info=failure)
+                reason = "an internal error; the server's log has the details"
+        return "failed", reason

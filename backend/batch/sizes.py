@@ -1,0 +1,37 @@
+"""How long the runs of a batch take, how large their results are, and how many of them make a part."""
+
+import math
+
+from vssea_core.batch.document import Keep
+
+LANE_SAMPLES_PER_S, ALONE_SAMPLES_PER_S = 3e7, 3e6
+"""Samples computed in a second by one core, in lanes and alone."""
+RUN_S = 1.3e-4
+"""What a run takes besides its samples: its scenario, its row."""
+PART_S = 1.5
+"""A part takes about so long: little to lose, little to wait for, and little spent on giving it out."""
+PART_BYTES = 8_000_000
+MOST_RUNS, STEP = 16_384, 16
+PARTS_A_WORKER = 8
+"""A short batch still has so many parts for each worker, so that all end at about the same time."""
+ENDED_SHARE = 0.1
+"""Runs that are taken to end early where only the samples of those are kept."""
+
+
+def seconds_of(samples: int, in_lanes: bool, keep: Keep) -> float:
+    """Return how long a run takes one core [s]; one whose samples are kept is run twice."""
+    again = {"none": 0.0, "ended": ENDED_SHARE, "all": 1.0}[keep.trajectories] * samples / ALONE_SAMPLES_PER_S
+    return RUN_S + samples / (LANE_SAMPLES_PER_S if in_lanes else ALONE_SAMPLES_PER_S) + again
+
+
+def bytes_of(columns: int, samples: int, keep: Keep) -> float:
+    """Return how large the results of a run are, at most about: numbers that vary are hardly compressed."""
+    share = {"none": 0.0, "ended": ENDED_SHARE, "all": 1.0}[keep.trajectories]
+    width = 8 if keep.precision == "float64" else 4
+    return 8.0 * columns + share * math.ceil(samples / keep.every) * (8.0 + width * len(keep.channels))
+
+
+def part_size(runs: int, seconds: float, size: float, workers: int) -> int:
+    """Return how many runs make a part, from what one of them takes [s] and [bytes]."""
+    most = min(PART_S / seconds, PART_BYTES / size, MOST_RUNS, math.ceil(runs / (PARTS_A_WORKER * workers)))
+    return max(STEP, STEP * math.floor(most / STEP))
