@@ -13,7 +13,10 @@ import { countWords, isActive } from "./words.js";
 
 const RELOAD_MS = 1500;
 const NOTHING = "No results yet. Choose fields on the left and start a batch, or open one of the list.";
-const WAITS = "No results yet: the first part of it is under way.";
+const WAITS = {
+  queued: "No results yet: it waits for the batches before it.",
+  running: "No results yet: the first part is under way. The first batch after an installation is compiled before, which takes some minutes.",
+};
 
 /** The results of one batch: its head, what is drawn of them, the chosen run. */
 export class BatchPage {
@@ -127,7 +130,7 @@ export class BatchPage {
 
   /** @returns {string} why nothing can be drawn, "" if something can */
   #nothing(isList) {
-    if (!this.table.rows) return this.batch && isActive(this.batch) ? WAITS : "It has no results.";
+    if (!this.table.rows) return WAITS[this.batch?.state] ?? "It has no results.";
     if (this.choice.kind === "map" && this.columns.paths.length < 2) return "A map needs two varied fields. This batch varies one: see the scatter plot.";
     if (!isList && !this.table.column("state").some((state) => state !== "refused")) return "Every run was refused: see “Not done” for the reasons.";
     return "";

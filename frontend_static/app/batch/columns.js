@@ -4,6 +4,8 @@ import { pathWords } from "./scenario_fields.js";
 const LIMIT = "limit_share.";
 const CHOICES = new Set(["string", "boolean"]);
 
+const LOWERED = { a: "ₐ", e: "ₑ", h: "ₕ", k: "ₖ", l: "ₗ", m: "ₘ", n: "ₙ", o: "ₒ", p: "ₚ", s: "ₛ", t: "ₜ", x: "ₓ" };
+
 /** What the columns of a batch's results are called, and in which unit they are shown: varied fields by the schema, figures. */
 export class Columns {
   /** @param {object} batch its `paths` and `columns` @param {object[]} fields of its scenario, see scenario_fields.js */
@@ -25,8 +27,7 @@ export class Columns {
     if (name.startsWith(LIMIT)) return { label: `limited: ${name.slice(LIMIT.length).replaceAll("_", " ")}`, unit: "%", factor: 100 };
     const field = this.fields.get(name);
     if (!field) return { label: pathWords(name) };
-    const sign = field.symbol ? ` ${field.symbol.replace("_", "")}` : "";
-    return { label: `${field.label}${sign}`, unit: field.unit, isLogarithmic: field.isLogarithmic, options: field.options };
+    return { label: `${field.label} ${plainSymbol(field.symbol)}`.trim(), unit: field.unit, isLogarithmic: field.isLogarithmic, options: field.options };
   }
 
   /** @returns {string} a value in words, with its unit unless `isBare` */
@@ -36,4 +37,11 @@ export class Columns {
     if (CHOICES.has(typeof value)) return options?.find((option) => String(option.value) === String(value))?.text ?? String(value);
     return `${write(value * factor)} ${unit}`.trim();
   }
+}
+
+/** @returns {string} a symbol without markup, "" for one that cannot be written so */
+function plainSymbol(text) {
+  const [, base, index] = text.match(/^([^_]+)(?:_([a-z]))?$/) ?? [];
+  if (!base) return "";
+  return index ? (LOWERED[index] ? `${base}${LOWERED[index]}` : "") : base;
 }

@@ -4,6 +4,7 @@ import { fitted, line } from "./plot_axes.js";
 import { NumberScale, cellScale, endsOf } from "./scales.js";
 
 const MOVES = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowDown: [0, -1], ArrowUp: [0, 1] };
+const WIDE = 20; // times the least: from here on the colours are logarithmic
 const BAR_PX = 14;
 const LEAST_MARK_PX = 9;
 const FONT = '11px system-ui, -apple-system, "Segoe UI", sans-serif';
@@ -33,7 +34,7 @@ export class HeatMap {
     this.hasSeveral = points.length > this.cells.size;
     const values = [...this.cells.values()].map(({ value }) => value).filter((value) => value !== null);
     const [low, high] = endsOf(values);
-    this.colours = values.length ? new NumberScale(low, high, low > 0 && high > 100 * low) : null;
+    this.colours = values.length ? new NumberScale(low, high, low > 0 && high > WIDE * low) : null;
     const title = this.hasSeveral ? `${this.gathering.title} ${figure.title}` : figure.title;
     this.title = title;
     this.about = `Map of ${title} over ${x.title} and ${y.title}.`;
@@ -74,10 +75,11 @@ export class HeatMap {
     ctx.font = FONT;
     ctx.textBaseline = "middle";
     ctx.textAlign = "left";
+    const cells = [...this.cells.values()];
     const words = [
       [true, "ended"],
       [false, "refused"],
-    ];
+    ].filter(([isEnded]) => cells.some(({ ended, refused }) => (isEnded ? ended : refused)));
     words.forEach(([isEnded, text], place) => {
       const y = top + tall + 26 + 22 * place;
       ctx.fillStyle = palette.colour("track");

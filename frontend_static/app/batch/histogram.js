@@ -3,6 +3,7 @@ import { line } from "./plot_axes.js";
 import { NumberScale, endsOf } from "./scales.js";
 
 const BARS = 32;
+const WIDE = 50; // times the least: from here on the axis is logarithmic
 const MOVES = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 };
 const HATCH_PX = 6;
 
@@ -14,7 +15,7 @@ export class Histogram {
   constructor(points, figure) {
     const there = points.filter(({ value, state }) => typeof value === "number" && state !== "refused");
     const [low, high] = endsOf(there.map(({ value }) => value));
-    const scale = there.length ? new NumberScale(low, high, low > 0 && high > 100 * low) : new NumberScale(0, 1);
+    const scale = there.length ? new NumberScale(low, high, low > 0 && high > WIDE * low) : new NumberScale(0, 1);
     this.figure = figure;
     this.bars = Array.from({ length: BARS }, (_, place) => ({ place, runs: [], ended: 0 }));
     this.ofRun = new Map();

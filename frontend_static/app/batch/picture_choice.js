@@ -15,6 +15,7 @@ const FIRST_FIGURE = "rms_error";
 /** What is drawn of the results: a map, a scatter plot, a histogram or the list of runs that did not do; and of which columns. */
 export class PictureChoice {
   #known = "";
+  #axesOf = ""; // the kind of picture that the axes were offered for
 
   /** @param {() => void} changed */
   constructor(changed) {
@@ -81,13 +82,16 @@ export class PictureChoice {
     this.changed();
   }
 
-  /** A map has varied fields on its axes; a scatter plot anything. */
+  /** A map has varied fields on its axes; a scatter plot anything, at first the figure over a field. */
   #offerAxes() {
     const { paths, figures } = this.columns;
-    const names = this.kind === "map" ? paths : [...paths, ...figures];
-    const up = this.kind === "scatter" ? (this.figure.value || FIRST_FIGURE) : paths[0];
-    fill(this.x, this.columns, names, this.kind === "map" ? paths[1] : paths[0]);
-    fill(this.y, this.columns, names, up);
+    if (this.kind === "histogram" || this.kind === "refused") return;
+    const isMap = this.kind === "map";
+    const names = isMap ? paths : [...paths, ...figures];
+    const isOther = this.#axesOf !== this.kind;
+    this.#axesOf = this.kind;
+    fill(this.x, this.columns, names, isMap ? paths[1] : (paths[0] ?? figures[0]));
+    fill(this.y, this.columns, names, isMap ? paths[0] : this.figure.value, isOther);
     if (this.x.value === this.y.value && names.length > 1) this.y.value = names.find((name) => name !== this.x.value);
   }
 
@@ -95,7 +99,7 @@ export class PictureChoice {
     this.kinds.show(this.kind);
     const shown = this.#shown();
     for (const select of [this.x, this.y, this.figure]) this.labels.get(select).hidden = !shown.includes(select);
-    if (this.kind !== "map") this.labels.get(this.gathering).hidden = true;
+    this.labels.get(this.gathering).hidden = true;
   }
 
   #shown() {
@@ -107,9 +111,9 @@ export class PictureChoice {
   }
 }
 
-/** Keep what was chosen where it is still offered. */
-function fill(select, columns, names, first) {
-  const kept = names.includes(select.value) ? select.value : first;
+/** Keep what was chosen where it is still offered, unless the choice is fresh. */
+function fill(select, columns, names, first, isFresh = false) {
+  const kept = !isFresh && names.includes(select.value) ? select.value : first;
   select.replaceChildren(...names.map((name) => new Option(columns.describe(name).title, name)));
   select.value = names.includes(kept) ? kept : names[0];
 }

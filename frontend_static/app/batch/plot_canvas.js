@@ -128,6 +128,7 @@ export class PlotCanvas {
   }
 
   #choose(spot) {
+    this.tip.hide();
     const run = spot === null || !this.picture ? null : this.picture.run(spot);
     if (run !== null && run !== undefined) this.chosen(run);
   }

@@ -7,7 +7,12 @@ import { batchRoutes, simulateRun } from "./batch_routes.js";
 import { SimulatedRun } from "./simulated_run.js";
 
 const SHOWN = ["position", "error", "torque"];
-const STATES = { done: "done", ended: "ended early", refused: "refused" };
+const STATES = { done: "done", ended: "ended early", refused: "refused", waiting: "not computed yet" };
+
+/** The same chart where there is little room: without what is drawn faintly. */
+function smaller(layout) {
+  return { ...layout, id: `run-${layout.id}`, series: layout.series.filter(({ isFaint }) => !isFaint) };
+}
 
 /** One run of a batch: its values, its figures, its course simulated anew by the server, and what it is good for. */
 export class RunPanel {
@@ -44,7 +49,7 @@ export class RunPanel {
       element("section", { class: "side-panel" }, element("h2", {}, "Simulated anew"), this.note, this.charts),
       element("section", { class: "side-panel" }, element("h2", {}, "Figures"), this.figures),
     );
-    const layouts = CHARTS.filter(({ id }) => SHOWN.includes(id)).map((layout) => ({ ...layout, id: `run-${layout.id}` }));
+    const layouts = CHARTS.filter(({ id }) => SHOWN.includes(id)).map(smaller);
     this.stack = new PlotStack(this.charts, this.source, theme, layouts);
   }
 
@@ -84,12 +89,14 @@ export class RunPanel {
     this.root.dataset.simulated = String(this.run);
   }
 
-  #show({ state, reason, values, figures, time_s: time }, columns) {
-    const early = state === "ended" && time !== null ? ` at ${compact(time)} s` : "";
+  /** @param {object} found its values, and beside them its row of the results, as far as it is computed */
+  #show(found, columns) {
+    const { state, reason, values, time_s: time } = found;
+    const early = state === "ended" && typeof time === "number" ? ` at ${compact(time)} s` : "";
     setText(this.state, `${STATES[state] ?? state}${early}${reason ? `: ${reason}` : ""}`);
     this.root.dataset.state = state;
     this.#fill(this.values, Object.entries(values).map(([path, value]) => this.#line(columns, path, value)));
-    this.#fill(this.figures, state === "refused" ? [] : columns.figures.filter((name) => name in figures).map((name) => this.#line(columns, name, figures[name])));
+    this.#fill(this.figures, state === "refused" ? [] : columns.figures.filter((name) => name in found).map((name) => this.#line(columns, name, found[name])));
     this.#can(state !== "refused");
     if (state === "refused") setText(this.note, "A refused run has no course.");
   }
