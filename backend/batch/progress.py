@@ -1,4 +1,4 @@
-"""How far a batch is: its runs by state, the rate of those computed since its begin or its latest start, the time left."""
+"""How far a batch is: its runs by state, the rate of those computed since it was begun or taken up again, the time left."""
 
 import time
 from collections import Counter
@@ -12,11 +12,19 @@ class Progress:
     """Counts the runs of one batch as its parts come in."""
 
     def __init__(
-        self, runs: int, parts: int, kept: dict[str, int], kept_parts: int, clock: Callable[[], float] = time.monotonic
+        self,
+        runs: int,
+        parts: int,
+        workers: int,
+        kept: dict[str, int],
+        kept_parts: int,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.runs, self.parts, self.parts_done = runs, parts, kept_parts
         self.counts = Counter(dict.fromkeys(STATES, 0) | kept)
-        self._clock, self._begun_s, self._new, self._seconds = clock, clock(), 0, 0.0
+        self._clock, self._warm_at = clock, kept_parts + max(1, workers)
+        self._since_s, self._latest_s, self._new = clock(), clock(), 0
+        self._first_rate: float | None = None
 
     @property
     def done(self) -> int:
@@ -32,25 +40,29 @@ class Progress:
         """Count the runs of a part."""
         self.counts.update(counts)
         self.parts_done += 1
-        self._new += sum(counts.values())
-        self._seconds = self._clock() - self._begun_s
+        self._latest_s, self._new = self._clock(), self._new + sum(counts.values())
+        if self.parts_done == self._warm_at and self.parts_done < self.parts:
+            # The first part of each worker waits for its start, and says little of the others.
+            self._first_rate = self._rate()
+            self._since_s, self._new = self._latest_s, 0
 
     @property
     def rate(self) -> float | None:
-        """Runs computed in a second since the start; None before the first part."""
-        return self._new / self._seconds if self._new and self._seconds > 0.0 else None
+        """Runs computed in a second; None before the first part."""
+        return self._rate() or self._first_rate
 
     def document(self) -> dict[str, Any]:
         """Return it as REST gives it."""
-        rate = self.rate
-        left = None if rate is None else max(0.0, (self.runs - self.done) / rate - self._since_part())
+        rate, left = self.rate, self.runs - self.done
+        seconds_left = None if rate is None else max(0.0, left / rate - (self._clock() - self._latest_s))
         return {
             "progress": {
                 "done": self.done, "runs": self.runs, "parts_done": self.parts_done, "parts": self.parts,
                 "share": self.share,
             },
-            "counts": dict(self.counts), "rate": rate, "seconds_left": left,
+            "counts": dict(self.counts), "rate": rate, "seconds_left": seconds_left,
         }  # fmt: skip
 
-    def _since_part(self) -> float:
-        return self._clock() - self._begun_s - self._seconds
+    def _rate(self) -> float | None:
+        seconds = self._latest_s - self._since_s
+        return self._new / seconds if self._new and seconds > 0.0 else None

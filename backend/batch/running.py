@@ -45,7 +45,7 @@ class Running:
         self._size = 0
         self._work: asyncio.Task[None] | None = None
         self._is_cancelled = False
-        self.progress = Progress(row.runs, row.parts, {}, 0, clock)
+        self.progress = self._progress({}, 0)
         self.ended = asyncio.Event()
         """Set when what became of it is kept."""
 
@@ -88,7 +88,7 @@ class Running:
         if there:
             counts = await self._results.run("counts", str(self._folder.path))
             self._size = await asyncio.to_thread(self._folder.size)
-            self.progress = Progress(self.row.runs, self.row.parts, counts, len(there), self._clock)
+            self.progress = self._progress(counts, len(there))
         missing = [part for part in parts_of(document, self.row.runs, self.row.part_size) if part.number not in there]
         await run_parts(self._engine, missing, self._keep)
 
@@ -97,6 +97,9 @@ class Running:
         self.progress.add(files.counts)
         self._changed()
         self._limits.check_kept(self._size)
+
+    def _progress(self, counts: dict[str, int], parts: int) -> Progress:
+        return Progress(self.row.runs, self.row.parts, self._engine.workers, counts, parts, self._clock)
 
     def _outcome(self, work: asyncio.Task[None]) -> tuple[str, str]:
         if work.cancelled():

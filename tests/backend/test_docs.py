@@ -45,7 +45,15 @@ def test_every_setting_is_listed_with_its_option_default_and_meaning() -> None:
         option, default, meaning = rows[f"VSSEA_{name.upper()}"]
         assert (option.strip("`") or "no option") == (f"--{name}" if f"--{name} " in options else "no option")
         assert meaning.startswith(str(field.description))
-        if name not in ("data_dir", "database", "recordings_dir", "token", "batches_dir", "batch_workers", "batch_engine"):
+        if name not in (
+            "data_dir",
+            "database",
+            "recordings_dir",
+            "token",
+            "batches_dir",
+            "batch_workers",
+            "batch_engine",
+        ):
             shown = json.loads(default.strip("`")) if name not in ("host", "scenario") else default.strip("`")
             assert shown == (list(field.default) if isinstance(field.default, tuple) else field.default)
 
@@ -87,7 +95,8 @@ def test_every_route_is_in_the_protocol(http: httpx.Client) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["hello", "state", "document", "event", "margins", "history", "pins", "trigger", "missed", "reply", "batches"]
+    "name",
+    ["hello", "state", "document", "event", "margins", "history", "pins", "trigger", "missed", "reply", "batches"],
 )
 def test_every_message_is_in_the_protocol(name: str) -> None:
     assert f'{{"type": "{name}"' in PROTOCOL
