@@ -37,6 +37,12 @@ export function drawAxes(ctx, { left, top, width, height }, { x, y }, palette) {
   ctx.restore();
 }
 
+/** @returns {number} room that the y axis needs for its name and ticks, px */
+export function leftOf(ctx, { y }) {
+  ctx.font = `11px ${FONT}`;
+  return 32 + Math.max(0, ...y.scale.ticks(10).map(({ text }) => ctx.measureText(text).width));
+}
+
 /** @returns {string} a text no wider than so many pixels; its end, which has the unit, stays */
 export function fitted(ctx, text, width) {
   if (ctx.measureText(text).width <= width) return text;

@@ -1,10 +1,10 @@
 import { element, setText } from "../element.js";
 import { Tip } from "../tip.js";
-import { drawAxes } from "./plot_axes.js";
+import { drawAxes, leftOf } from "./plot_axes.js";
 
-const PAD = { left: 68, right: 22, top: 14, bottom: 46 };
+const PAD = { left: 58, right: 22, top: 14, bottom: 46 };
 const LEGEND_PX = 92;
-const NARROW_PX = 460;
+const MOST_LEFT = 0.25; // of the width, for the words on an axis
 
 /**
  * A plot on a canvas: axes, a picture in them, and spots of it that are read under the pointer or by the arrow keys.
@@ -64,7 +64,7 @@ export class PlotCanvas {
     ctx.scale(devicePixelRatio, devicePixelRatio);
     const { picture, palette } = this;
     if (!picture) return;
-    const left = width < NARROW_PX ? 54 : PAD.left;
+    const left = Math.min(MOST_LEFT * width, Math.max(PAD.left, leftOf(ctx, picture)));
     const right = picture.hasLegend ? LEGEND_PX : PAD.right;
     this.box = { left, top: PAD.top, width: Math.max(10, width - left - right), height: Math.max(10, height - PAD.top - PAD.bottom) };
     ctx.save();

@@ -10,10 +10,10 @@ export function countWords(count) {
   return count === null || count === undefined ? "–" : String(count).replace(/\B(?=(\d{3})+$)/g, " ");
 }
 
-/** @returns {string} how long something takes, no more exact than it is known: under 1 s, 12 s, 2:05 min */
+/** @returns {string} how long something takes, no more exact than it is known: less than 1 s, 12 s, 2:05 min */
 export function spanWords(seconds) {
   if (seconds === null || seconds === undefined) return "–";
-  if (seconds < 1) return "under 1 s";
+  if (seconds < 1) return "less than 1 s";
   return seconds < 60 ? `${Math.round(seconds)} s` : durationWords(seconds);
 }
 
