@@ -172,7 +172,7 @@ def test_a_clicked_run_is_kept_as_a_preset(running: Server, open_page: OpenPage,
     expect(page.locator("#batch-run .run-words")).to_contain_text("Kept as preset of a batch")
     run = page.locator("#batch-run h2").first.inner_text().split()[1]
     values = running.get(f"/api/batches/{mapped}/runs/{run}").json()["values"]
-    content = running.get("/api/presets/of%20a%20batch").json()
+    content = running.get("/api/presets/of%20a%20batch").json()["content"]
     assert content["tuning"]["observer"]["bandwidth"] == values[BANDWIDTH]
 
 
