@@ -11,6 +11,7 @@ BENCHMARKS = {
         "time of stability and margin maps and of the report on one tuning, beside python-control",
     ),
     "stability": ("benchmarks.stability", "linear predictions against nonlinear simulations at 400 random points"),
+    "batch": ("benchmarks.batch", "runs a second of batches, their memory, beside a plain loop over single runs"),
     "export": ("benchmarks.export", "one tick of the exported C controller, beside the compiled tick"),
     "store": ("benchmarks.store", "1,000 edits of one preset by two programs, and a list of 1,000 presets"),
     "start": ("benchmarks.start", "from starting the server to something moving on the page"),

@@ -36,7 +36,7 @@ numba.config.CACHE_DIR = str(cache_folder())
 def inlined(function: Kernel) -> Kernel:
     """Compile a part of a kernel: scalars and tuples in and out, always inlined, no fast-math (runs stay equal to the bit)."""
     compiled: Kernel = numba.njit(forceinline=True, error_model="numpy")(function)
-    return compiled
+    return named(compiled, function)
 
 
 def written_out(function: Kernel) -> Kernel:
@@ -45,16 +45,27 @@ def written_out(function: Kernel) -> Kernel:
     What is merely `inlined` is a small call to the passes that unroll loops, and they come before those that make vectors.
     """
     compiled: Kernel = numba.njit(inline="always", error_model="numpy")(function)
-    return compiled
+    return named(compiled, function)
 
 
 def entry(function: Kernel) -> Kernel:
     """Compile a kernel that Python calls: arrays in and out, cached on disk, without the interpreter lock."""
     compiled: Kernel = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
-    return compiled
+    return named(compiled, function)
 
 
 def called(function: Kernel) -> Kernel:
     """Compile a part of a kernel that few runs need: a function of its own, so that the tick around it stays small."""
     compiled: Kernel = numba.njit(error_model="numpy")(function)
+    return named(compiled, function)
+
+
+def named(compiled: Kernel, function: Callable[..., Any]) -> Kernel:
+    """Give a kernel a name that is the same in every process: by it numba's cache knows what a closure holds.
+
+    Its own names are random, and would have kernels made inside a function compiled anew in each process.
+    """
+    held = [cell.cell_contents for cell in function.__closure__ or ()]
+    told = [getattr(each, "_uuid", each) for each in held]
+    compiled._set_uuid(f"{function.__module__}.{function.__qualname__} {told}")  # type: ignore[attr-defined]
     return compiled

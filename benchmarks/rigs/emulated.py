@@ -12,7 +12,8 @@ from benchmarks.live_server import Server, running_server
 from benchmarks.rigs.operator import Operator
 
 RIG = "measured"
-CENTRED = ("holding 0.000 rad", "holding -0.000 rad")
+CENTRED = tuple(f"holding {position} rad" for position in ("0.000", "-0.000", "0.001", "-0.001"))
+"""A way of less than a milliradian is none."""
 
 
 def rig_text(bus_port: int, rate_hz: int) -> str:

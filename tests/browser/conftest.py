@@ -11,6 +11,7 @@ from tests.backend.server import Server, until
 from tests.browser.waiting import PATIENCE_MS, wait_until
 
 ANALYSIS_LIMIT_S = 240.0
+NO_SCENE = "<!doctype html><html lang=en><title>no scene</title></html>"
 FLAGS = (
     "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
@@ -56,7 +57,7 @@ OpenPage = Callable[..., Page]
 
 @pytest.fixture
 def open_page(browser: Browser) -> Iterator[OpenPage]:
-    """Opens pages that have telemetry; at the end none of them may have logged an error."""
+    """Opens pages that have telemetry, and a `scene` if asked; at the end none of them may have logged an error."""
     complaints: list[str] = []
     contexts = []
 
@@ -64,7 +65,7 @@ def open_page(browser: Browser) -> Iterator[OpenPage]:
         if message.type == "error":
             complaints.append(message.text)
 
-    def opened(server: Server, colours: str = "dark", tolerant: bool = False) -> Page:
+    def opened(server: Server, colours: str = "dark", tolerant: bool = False, scene: bool = False) -> Page:
         context = browser.new_context(color_scheme=colours, viewport={"width": 1440, "height": 900})  # type: ignore[arg-type]
         context.set_default_timeout(PATIENCE_MS)
         contexts.append(context)
@@ -72,6 +73,8 @@ def open_page(browser: Browser) -> Iterator[OpenPage]:
         if not tolerant:
             page.on("console", complain)
         page.on("pageerror", lambda error: complaints.append(str(error)))
+        if not scene:  # without a graphics card it takes most of the processor
+            page.route("**/scene/**", lambda route: route.fulfill(body=NO_SCENE, content_type="text/html"))
         page.goto(server.url)
         wait_for_samples(page)
         page.wait_for_selector("[data-path='tuning.controller.natural_frequency'] input")

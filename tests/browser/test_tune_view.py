@@ -104,7 +104,7 @@ def picture(page: Page) -> NDArray[np.float64]:
 
 
 def test_the_scene_is_drawn_and_moves(running: Server, open_page: OpenPage) -> None:
-    page = open_page(running)
+    page = open_page(running, scene=True)
     page.frame_locator("#scene iframe").locator("canvas").first.wait_for()
     looks = 60
     first = picture(page)

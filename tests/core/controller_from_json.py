@@ -40,7 +40,7 @@ class JsonController:
 
     def forces(self, tau_s: float, back: float, torques: Numbers) -> tuple[float, float, float]:
         m = self.model
-        return tau_s / m["J_l"], (torques[0] - tau_s) / m["J_e"], (torques[1] - back) / m["J_ms"]
+        return tau_s * (1 / m["J_l"]), (torques[0] - tau_s) * (1 / m["J_e"]), (torques[1] - back) * (1 / m["J_ms"])
 
     def tick(self, x: Numbers) -> tuple[float, float]:
         """`x`: positions (3), velocities (3), applied torques (2), torque on its way, limited, references now and ahead."""
@@ -93,8 +93,8 @@ class JsonController:
             theta_ms = self.theta[2] + time * ms[1] + time**2 / 2 * ms_acceleration
             tau_s = self.spring(y[2] - y[0], theta_ms)[0]
             d_l, d_e = (s[2] + s[3] * time + s[4] * time**2 / 2 for s in (link, motor))
-            a_l = (tau_s - m["b_l"] * y[1]) / m["J_l"] - d_l
-            return np.array([y[1], a_l, y[3], (torque - tau_s - m["b_e"] * y[3]) / m["J_e"] - d_e])
+            a_l = (tau_s - m["b_l"] * y[1]) * (1 / m["J_l"]) - d_l
+            return np.array([y[1], a_l, y[3], (torque - tau_s - m["b_e"] * y[3]) * (1 / m["J_e"]) - d_e])
 
         y = np.array([link[0], link[1], motor[0], motor[1]])
         k1 = rates(y, 0.0)
@@ -123,9 +123,9 @@ class JsonController:
         known = loop["rate_share"] * stiff[1] / theta_ms
         v, a_ms = loop["moving_share"] * stiff[1] / theta_ms, loop["moving_share"] * ms[2] / theta_ms
         rate = motor[1] - link[1]
-        beta = m["b_l"] / m["J_l"]
-        a_l = tau_s / m["J_l"] - beta * link[1] - link[2]
-        j_l = (k * rate - 3 * tau_s * known) / m["J_l"] - beta * a_l - link[3]
+        beta = m["b_l"] * (1 / m["J_l"])
+        a_l = tau_s * (1 / m["J_l"]) - beta * link[1] - link[2]
+        j_l = (k * rate - 3 * tau_s * known) * (1 / m["J_l"]) - beta * a_l - link[3]
         e = r[:4] - [link[0], link[1], a_l, j_l]
         self.asked_twisting = 0.0
         if self.document["controller"] == "state_feedback":

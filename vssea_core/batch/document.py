@@ -1,16 +1,16 @@
 """The batch document: a base scenario, how it is varied, and what is kept of each run. Imports no numba and no scipy."""
 
+import difflib
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, JsonValue, model_validator
+from pydantic import Field, JsonValue, field_validator, model_validator
 
-from vssea_core.channels import CHANNELS
+from vssea_core.channels import CHANNELS, INDEX
 from vssea_core.fields import Part, choice, kind, parameter
 from vssea_core.scenario import Scenario
 
 Path = Annotated[str, Field(min_length=1, max_length=200, title="path")]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-ChannelName = Literal[tuple(channel.name for channel in CHANNELS)]  # type: ignore[valid-type]
 MOST_VALUES = 1_000_000
 
 
@@ -104,11 +104,20 @@ class Keep(Part):
     trajectories: Literal["none", "ended", "all"] = choice(
         "none", "trajectories", meaning="Of which runs samples are kept: of none, of those that ended early, or of all."
     )
-    channels: tuple[ChannelName, ...] = Field(
+    channels: tuple[str, ...] = Field(
         ("reference", "link_position", "motor_torque"), min_length=1, max_length=len(CHANNELS)
     )
     every: int = Field(10, ge=1, le=100_000, strict=True, description="Keeps one sample of so many.")
     precision: Literal["float32", "float64"] = "float32"
+
+    @field_validator("channels")
+    @classmethod
+    def _known_channels(cls, names: tuple[str, ...]) -> tuple[str, ...]:
+        for name in names:
+            if name not in INDEX:
+                near = difflib.get_close_matches(name, INDEX, 3, cutoff=0.3)
+                raise ValueError(f"there is no channel {name!r}; nearest: {', '.join(near or list(INDEX)[:3])}")
+        return names
 
 
 class Batch(Part):

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from vssea_core.batch.course_book import CourseBook
 from vssea_core.batch.lane_access import LANES
 from vssea_core.batch.lanes import Variant
 from vssea_core.batch.numbers import NumbersOf, RunNumbers
@@ -62,13 +63,18 @@ def run_scenarios(
                 len(numbers.prepared),
             )
             groups[kind].append((place, numbers))
+    courses = CourseBook()
     for (variant, *_), runs in groups.items():
         runs.sort(key=lambda each: each[1].course)  # those that share a course lie side by side
         for first in range(0, len(runs), LANES):
             if not goes_on(len(outcomes)):
                 return None
             together = runs[first : first + LANES]
-            outcomes |= _alone(together) if variant is None or len(together) < FEW else _side_by_side(variant, together)
+            outcomes |= (
+                _alone(together)
+                if variant is None or len(together) < FEW
+                else _side_by_side(variant, together, courses)
+            )
     return [outcomes[place] for place in range(len(scenarios))]
 
 
@@ -85,8 +91,8 @@ def _alone(runs: Iterable[tuple[int, RunNumbers]]) -> dict[int, Outcome]:
     return {place: run_alone(numbers.scenario) for place, numbers in runs}
 
 
-def _side_by_side(variant: Variant, runs: Sequence[tuple[int, RunNumbers]]) -> dict[int, Outcome]:
-    figures, gone = run_side_by_side(variant, [numbers for _, numbers in runs])
+def _side_by_side(variant: Variant, runs: Sequence[tuple[int, RunNumbers]], courses: CourseBook) -> dict[int, Outcome]:
+    figures, gone = run_side_by_side(variant, [numbers for _, numbers in runs], courses)
     outcomes = _alone(each for each, ended in zip(runs, gone, strict=True) if ended)
     for (place, numbers), row in zip(runs, figures, strict=True):
         if place not in outcomes:

@@ -45,3 +45,7 @@ def put_lane(typing: Any, array: Any, at: Any, values: Any) -> Any:
 
 def _place(builder: Any, data: Any, at: Any, k: int) -> Any:
     return builder.gep(data, [builder.add(at, ir.Constant(at.type, k * LANES))], inbounds=True)
+
+
+for _intrinsic in (lane, put_lane):
+    _intrinsic._set_uuid(f"{__name__}.{_intrinsic._name}")  # see compiled.named

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vssea_core.batch import layout as at
-from vssea_core.batch.courses import fill_course
+from vssea_core.batch.course_book import CourseBook
 from vssea_core.batch.lane_access import LANES
 from vssea_core.batch.lanes import Variant, lanes_kernel
 from vssea_core.batch.numbers import RunNumbers
@@ -19,10 +19,13 @@ BLOCK = 500
 """Samples whose courses are computed ahead: few enough to stay in the processor's cache."""
 
 
-def run_side_by_side(variant: Variant, runs: Sequence[RunNumbers]) -> tuple[Numbers, NDArray[np.bool_]]:
+def run_side_by_side(
+    variant: Variant, runs: Sequence[RunNumbers], courses: CourseBook
+) -> tuple[Numbers, NDArray[np.bool_]]:
     """Return metrics and limit shares (n, 17) of up to LANES runs of one kind, and which of them ended early (n,).
 
-    What is returned of a run that ended early means nothing: run it alone.
+    `courses` keeps what these runs have in common with others. What is returned of a run that ended early means nothing:
+    run it alone.
     """
     first = runs[0]
     period, count = first.scenario.timing.sample_time_s, first.count
@@ -32,12 +35,12 @@ def run_side_by_side(variant: Variant, runs: Sequence[RunNumbers]) -> tuple[Numb
         gone[j] = not _start(each, lanes[:, j])
     lanes[:, len(runs) :] = lanes[:, :1]  # lanes that nobody needs do what the first one does
     tunings = np.array([each.prepared for each in runs] + [first.prepared] * (LANES - len(runs)))
-    courses = _Courses(runs, variant.predicts)
+    courses.open(runs, variant.predicts)
     kernel, block = lanes_kernel(variant), lanes.ravel()
     for begin in range(1, count, BLOCK):
         samples = min(BLOCK, count - begin)
         kernel(
-            block, tunings, courses.filled(begin, samples, period), courses.link_terms, courses.motor_terms,
+            block, tunings, courses.pages(begin, samples), courses.link_terms, courses.motor_terms,
             courses.which, begin, samples, period, first.delayed, first.is_scheduled,
         )  # fmt: skip
         if lanes[at.GONE].all():
@@ -59,36 +62,3 @@ def _start(each: RunNumbers, lane: Numbers) -> bool:
     lane[at.STATE : at.TARGET] = each.state
     lane[at.SUMS : at.TAKEN_AT], lane[at.TAKEN_AT] = first_sums(row[0]), np.nan
     return bool(end == RUNNING)
-
-
-class _Courses:
-    """The different courses of some runs, a block of samples at a time."""
-
-    def __init__(self, runs: Sequence[RunNumbers], predicts: bool) -> None:
-        kinds = {each.course: each for each in reversed(runs)}
-        self._different, self._predicts = list(kinds.values()), predicts
-        places = {kind: place for place, kind in enumerate(kinds)}
-        self.which = np.zeros(LANES, dtype=np.int64)
-        self.which[: len(runs)] = [places[each.course] for each in runs]
-        self.which[len(runs) :] = self.which[0]
-        self.link_terms = _stacked([each.inputs.link_terms for each in self._different])
-        self.motor_terms = _stacked([each.inputs.motor_terms for each in self._different])
-        self._room = np.empty((len(self._different), BLOCK, at.COURSE_SIZE))
-
-    def filled(self, first: int, count: int, period_s: float) -> Numbers:
-        """Return the courses (m, count, COURSE_SIZE) of `count` samples from `first` on."""
-        for each, course in zip(self._different, self._room, strict=True):
-            fill_course(
-                each.reference, each.slew, each.inputs.link_terms, each.inputs.motor_terms, self._predicts,
-                first, count, period_s, course,
-            )  # fmt: skip
-        return self._room
-
-
-def _stacked(tables: Sequence[Numbers]) -> Numbers:
-    """Return tables of disturbance terms (m, n, 16), filled up with terms that never act."""
-    stacked = np.full((len(tables), max(len(table) for table in tables), tables[0].shape[1]), np.inf)
-    stacked[:, :, 0] = 0.0
-    for to, table in zip(stacked, tables, strict=True):
-        to[: len(table)] = table
-    return stacked

@@ -20,8 +20,8 @@ def state_feedback_gains(natural_frequency: float, damping: float) -> Numbers:
 
     At damping 1 this is [p^4, 4 p^3, 6 p^2, 4 p], the quadruple pole -p. Units: rad/s^4 per rad, rad/s, ...
     """
-    pair = np.array([1.0, 2.0 * damping * natural_frequency, natural_frequency**2])
-    return np.polymul(pair, pair)[:0:-1]
+    a, b = 2.0 * damping * natural_frequency, natural_frequency**2
+    return np.array([b * b, 2.0 * a * b, a * a + 2.0 * b, 2.0 * a])  # (s^2 + a s + b)^2
 
 
 def surface_gains(surface_pole: float) -> Numbers:
@@ -34,14 +34,14 @@ def polynomial_of(poles: Poles) -> Numbers:
 
     Raises ValueError if a complex pole comes without its conjugate.
     """
-    coefficients = np.array([1.0 + 0.0j])
-    for pole in poles:
-        coefficients = np.convolve(coefficients, [1.0, -pole])
-    size = np.cumprod([1.0, *np.abs(poles)])
-    if np.any(np.abs(coefficients.imag) > 1e-6 * np.maximum(np.abs(coefficients), size)):
+    coefficients, sizes = [1.0 + 0.0j], [1.0]  # of a handful of poles: arrays would cost ten times the sums
+    for pole in map(complex, poles):
+        shifted = zip([*coefficients, 0.0], [0.0, *coefficients], strict=True)
+        coefficients = [here - pole * before for here, before in shifted]
+        sizes.append(sizes[-1] * abs(pole))
+    if any(abs(c.imag) > 1e-6 * max(abs(c), size) for c, size in zip(coefficients, sizes, strict=True)):
         raise ValueError(f"poles {list(poles)} have a complex one without its conjugate; give both of each pair")
-    real: Numbers = coefficients.real[:0:-1]
-    return real
+    return np.array([c.real for c in reversed(coefficients[1:])])
 
 
 def chain_gains_of_poles(poles: Poles) -> Numbers:

@@ -128,9 +128,10 @@ def started(model, y, applied_e, applied_ms):
     shape = Spring(spring.torque, spring.back, 1.0)
     tau_s = model.spring_constant * shape.torque
     tau_back = model.spring_constant * shape.back
-    d_l = tau_s / model.link_inertia
-    d_e = (applied_e - tau_s) / model.motor_inertia
-    d_ms = (applied_ms - tau_back) / model.stiffness_inertia
+    # Products with 1/J as in `act`: rounded otherwise, they would kick the motor a little.
+    d_l = tau_s * (1.0 / model.link_inertia)
+    d_e = (applied_e - tau_s) * (1.0 / model.motor_inertia)
+    d_ms = (applied_ms - tau_back) * (1.0 / model.stiffness_inertia)
     if model.observer == NO_OBSERVER:
         d_l = d_e = 0.0
     return Memory(

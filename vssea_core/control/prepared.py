@@ -1,6 +1,7 @@
 """From a tuning to the flat numbers of the tick."""
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from vssea_core.control.law import (
     VELOCITY_FORM,
 )  # fmt: skip
 from vssea_core.control.observer import ObserverGains
+from vssea_core.control.observer_poles import PositionShape, VelocityShape
 from vssea_core.control.tuning import NoObserver, PositionObserver, SlidingMode, Tuning, VelocityObserver
 
 Numbers = NDArray[np.float64]
@@ -108,11 +110,21 @@ def _observer_gains(
     observer: VelocityObserver | PositionObserver, bandwidth: float, damping_rate: float, sample_time_s: float
 ) -> ObserverGains:
     if isinstance(observer, VelocityObserver):
-        exact = observer.discretisation == "exact"
-        form = observer_design.velocity_exact if exact else observer_design.velocity_first_order_hold
-        matrices = form(bandwidth, sample_time_s, observer.shape)
-        return _gains(sample_time_s, velocity=np.concatenate([part.ravel() for part in matrices]))
-    a, b0, b1, m = observer_design.position_form(bandwidth, damping_rate, sample_time_s, observer.shape)
+        return _velocity_gains(observer.discretisation == "exact", observer.shape, bandwidth, sample_time_s)
+    return _position_gains(observer.shape, bandwidth, damping_rate, sample_time_s)
+
+
+# A tuning has the same observer twice or three times over, and of many tunings of a batch many share theirs.
+@lru_cache(maxsize=4096)
+def _velocity_gains(exact: bool, shape: VelocityShape, bandwidth: float, sample_time_s: float) -> ObserverGains:
+    form = observer_design.velocity_exact if exact else observer_design.velocity_first_order_hold
+    matrices = form(bandwidth, sample_time_s, shape)
+    return _gains(sample_time_s, velocity=np.concatenate([part.ravel() for part in matrices]))
+
+
+@lru_cache(maxsize=4096)
+def _position_gains(shape: PositionShape, bandwidth: float, damping_rate: float, sample_time_s: float) -> ObserverGains:
+    a, b0, b1, m = observer_design.position_form(bandwidth, damping_rate, sample_time_s, shape)
     return _gains(sample_time_s, position=np.array([*a[0, 1:], *a[1, 1:], b0[0], b1[0], b0[1], b1[1], *m]))
 
 

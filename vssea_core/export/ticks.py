@@ -71,7 +71,7 @@ def given(rig_row, reference, states, inputs):
 def answered(prepared, predicts, inputs, outputs):
     """Run the tick from its first over `inputs` (n, INPUTS) and write what it answers into `outputs` (n, OUTPUTS)."""
     row = np.empty(ROW)
-    start = inputs[:, STIFFNESS_AT]
+    start = inputs[0, STIFFNESS_AT]
     memory = loaded_memory(np.zeros(MEMORY_SIZE))
     scheduled = is_scheduled(prepared)
     twisting = 0.0

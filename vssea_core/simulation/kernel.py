@@ -115,7 +115,7 @@ def run(
         # The gains of the next samples: of all that are left, or until those that follow the stiffness have to change. The
         # observer of the period that has just ended belongs to the tuning that was in force.
         samples = 1 if done == 0 else count - done
-        at = gains_at(memory, slewed)
+        at = gains_at(memory, slewed.command)
         observing_values = before if done == 0 else prepared
         take_row(observing_values, at, row)
         observing = loaded_prepared(observing_values, row)
@@ -123,7 +123,7 @@ def run(
         tuning = loaded_prepared(prepared, row)
         predicts = tuning.law.predict != 0.0 and rig.compute_delay != 0.0
         for i in range(done, done + samples):
-            if scheduled and gains_at(memory, slewed) != at:
+            if scheduled and gains_at(memory, slewed.command) != at:
                 break
             time = (first + i) * period
             y = measure(rig.encoders, rig.noise, now, first + i)

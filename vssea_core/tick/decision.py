@@ -14,9 +14,9 @@ from vssea_core.signals.stiffness import advance_stiffness
 
 
 @inlined
-def gains_at(memory, slewed):
+def gains_at(memory, command):
     """Return the stiffness motor position [rad] for which gains are taken: the last measured one, in steps of 1/1024 rad."""
-    theta_ms = memory.stiffness.measured if memory.spring.started != 0.0 else slewed.command
+    theta_ms = memory.stiffness.measured if memory.spring.started != 0.0 else command
     return np.rint(theta_ms * 1024.0) / 1024.0
 
 

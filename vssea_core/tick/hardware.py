@@ -74,7 +74,7 @@ def tick(
     added_e, added_ms = state[SENT_AT + 2], state[SENT_AT + 3]
     time = sample * period
 
-    at = gains_at(memory, slewed)
+    at = gains_at(memory, slewed.command)
     take_row(before, at, gains[0])
     observing = loaded_prepared(before, gains[0])
     take_row(prepared, at, gains[1])

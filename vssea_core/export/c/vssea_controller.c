@@ -21,20 +21,23 @@ enum { K1, K2, K3, K4, S1, S2, S3, X1, X2, X3, X4, PREFILTER, LINK, MOTOR = LINK
 
 static spring_t spring_at(double deflection, double theta_ms)
 {
-    double x = 0.25 * deflection, q, c;
+    double x = 0.25 * deflection, q, c, s, ss, sine;
     double per_theta, per_cube;
     spring_t spring;
 
-    if (fabs(x) > 0.25) {
-        q = sin(x);
-        c = cos(x);
-    } else { /* series, error below 2e-16 */
-        double s = x * x, ss = s * s;
-        double sine = (1.0 - s * (1.0 / 6.0))
-                      + ss * ((1.0 / 120.0 - s * (1.0 / 5040.0)) + ss * (1.0 / 362880.0 - s * (1.0 / 39916800.0)));
-        c = (1.0 - s * 0.5) + ss * ((1.0 / 24.0 - s * (1.0 / 720.0)) + ss * (1.0 / 40320.0 - s * (1.0 / 3628800.0)));
-        q = x * sine;
-    }
+    if (fabs(x) > 0.78539816339744831) /* the law ends at a deflection of pi */
+        x = copysign(0.78539816339744831, x);
+    s = x * x; /* series, error below 2e-16 */
+    ss = s * s;
+    sine = (1.0 - s * (1.0 / 6.0))
+           + ss * ((1.0 / 120.0 - s * (1.0 / 5040.0))
+                   + ss * ((1.0 / 362880.0 - s * (1.0 / 39916800.0))
+                           + ss * (1.0 / 6227020800.0 - s * (1.0 / 1307674368000.0))));
+    c = (1.0 - s * 0.5)
+        + ss * ((1.0 / 24.0 - s * (1.0 / 720.0))
+                + ss * ((1.0 / 40320.0 - s * (1.0 / 3628800.0))
+                        + ss * ((1.0 / 479001600.0 - s * (1.0 / 87178291200.0)) + ss * (1.0 / 20922789888000.0))));
+    q = x * sine;
     per_theta = 1.0 / theta_ms;
     per_cube = per_theta * per_theta * per_theta;
     spring.torque = 2.0 * q * c * per_cube;
@@ -144,11 +147,11 @@ static void observe(vssea_controller_t *c, const double *gains, const vssea_meas
     c->spring_torque = spring.torque;
     c->spring_back = spring.back;
     if (c->started == 0.0) {
-        double d_l = tau_s1 / VSSEA_LINK_INERTIA, d_e = (applied_e - tau_s1) / VSSEA_MOTOR_INERTIA;
+        double d_l = tau_s1 * per_l, d_e = (applied_e - tau_s1) * per_e;
 
         c->link = channel_at_rest(y->theta_l, VSSEA_FORM == VSSEA_OFF ? 0.0 : d_l);
         c->motor = channel_at_rest(y->theta_e, VSSEA_FORM == VSSEA_OFF ? 0.0 : d_e);
-        c->stiffness = channel_at_rest(y->theta_ms, (applied_ms - back1) / VSSEA_STIFFNESS_INERTIA);
+        c->stiffness = channel_at_rest(y->theta_ms, (applied_ms - back1) * per_ms);
         c->started = 1.0;
         return;
     }
@@ -182,8 +185,8 @@ static pair_t accelerations(const vssea_controller_t *c, double ms_acceleration,
     double d_e = c->motor.d + time * (c->motor.d1 + 0.5 * time * c->motor.d2);
     pair_t a;
 
-    a.link = (tau_s - VSSEA_LINK_DAMPING * omega_l) / VSSEA_LINK_INERTIA - d_l;
-    a.motor = (torque - tau_s - VSSEA_MOTOR_DAMPING * omega_e) / VSSEA_MOTOR_INERTIA - d_e;
+    a.link = (tau_s - VSSEA_LINK_DAMPING * omega_l) * (1.0 / VSSEA_LINK_INERTIA) - d_l;
+    a.motor = (torque - tau_s - VSSEA_MOTOR_DAMPING * omega_e) * (1.0 / VSSEA_MOTOR_INERTIA) - d_e;
     return a;
 }
 
@@ -264,14 +267,15 @@ static void act(const vssea_controller_t *c, const double *g, const vssea_target
     double theta_ms = stiffness->measured;
     spring_t spring = spring_at(motor->theta - link->theta, theta_ms);
     double tau_s = VSSEA_SPRING_CONSTANT * spring.torque, k = VSSEA_SPRING_CONSTANT * spring.stiffness;
-    double known_rate = VSSEA_RATE_SHARE * stiffness->omega / theta_ms;
-    double ms_rate = VSSEA_MOVING_SHARE * stiffness->omega / theta_ms;
-    double ms_acceleration = VSSEA_MOVING_SHARE * ms->r2 / theta_ms;
+    double per_theta = 1.0 / theta_ms, per_inertia = 1.0 / VSSEA_LINK_INERTIA;
+    double known_rate = VSSEA_RATE_SHARE * stiffness->omega * per_theta;
+    double ms_rate = VSSEA_MOVING_SHARE * stiffness->omega * per_theta;
+    double ms_acceleration = VSSEA_MOVING_SHARE * ms->r2 * per_theta;
     double deflection_rate = motor->omega - link->omega;
     double tau_s_rate = k * deflection_rate - 3.0 * tau_s * known_rate;
-    double beta = VSSEA_LINK_DAMPING / VSSEA_LINK_INERTIA;
-    double a_l = tau_s / VSSEA_LINK_INERTIA - beta * link->omega - link->d;
-    double j_l = tau_s_rate / VSSEA_LINK_INERTIA - beta * a_l - link->d1;
+    double beta = VSSEA_LINK_DAMPING * per_inertia;
+    double a_l = tau_s * per_inertia - beta * link->omega - link->d;
+    double j_l = tau_s_rate * per_inertia - beta * a_l - link->d1;
     double e1 = target->r - link->theta, e2 = target->r1 - link->omega, e3 = target->r2 - a_l, e4 = target->r3 - j_l;
     double sigma = g[S1] * e1 + g[S2] * e2 + g[S3] * e3 + e4;
     double snap, moving, a_e, asked;
