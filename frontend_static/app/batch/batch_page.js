@@ -12,16 +12,17 @@ import { UnwellList } from "./unwell_list.js";
 import { countWords, isActive } from "./words.js";
 
 const RELOAD_MS = 1500;
+const REST = 4; // times as long as the results took to fetch, before they are fetched again
 const NOTHING = "No results yet. Choose fields on the left and start a batch, or open one of the list.";
 const WAITS = {
   queued: "No results yet: it waits for the batches before it.",
-  running: "No results yet: the first part is under way. The first batch after an installation is compiled before, which takes some minutes.",
+  running: "No results yet: the first part is under way. The first batch after an installation compiles its code before, which takes some minutes.",
 };
 
 /** The results of one batch: its head, what is drawn of them, the chosen run. */
 export class BatchPage {
   #timer = null;
-  #loadedAt = 0;
+  #nextAt = 0;
   #seen = "";
 
   /** @param {object} desk {session, theme} */
@@ -78,7 +79,7 @@ export class BatchPage {
     if (seen === this.#seen) return;
     this.#seen = seen;
     if (!isActive(batch)) return this.#reload();
-    this.#timer ??= setTimeout(() => this.#reload(), Math.max(0, this.#loadedAt + RELOAD_MS - performance.now()));
+    this.#timer ??= setTimeout(() => this.#reload(), Math.max(0, this.#nextAt - performance.now()));
   }
 
   /** Show one run. */
@@ -98,8 +99,10 @@ export class BatchPage {
   async #reload() {
     clearTimeout(this.#timer);
     this.#timer = null;
+    const begun = performance.now();
     await Promise.all([this.table.need(this.#names()), this.table.isLoading ? null : this.table.reload()]);
-    this.#loadedAt = performance.now();
+    const ended = performance.now();
+    this.#nextAt = ended + Math.max(RELOAD_MS, REST * (ended - begun));
   }
 
   #names() {

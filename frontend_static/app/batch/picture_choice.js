@@ -2,6 +2,7 @@ import { element } from "../element.js";
 import { Segmented } from "../parameters/segmented.js";
 import { GATHERINGS, HeatMap } from "./heat_map.js";
 import { Histogram } from "./histogram.js";
+import { WordCells } from "./scales.js";
 import { Scatter } from "./scatter.js";
 
 const KINDS = [
@@ -10,6 +11,7 @@ const KINDS = [
   { value: "histogram", text: "Histogram" },
   { value: "refused", text: "Not done" },
 ];
+const LABELS = ["across", "up", "figure", "colours", "of several"];
 const FIRST_FIGURE = "rms_error";
 
 /** What is drawn of the results: a map, a scatter plot, a histogram or the list of runs that did not do; and of which columns. */
@@ -25,9 +27,10 @@ export class PictureChoice {
     this.x = this.#select("Across");
     this.y = this.#select("Up");
     this.figure = this.#select("Figure");
+    this.group = this.#select("Colours");
     this.gathering = this.#select("Of several runs in a cell");
     this.gathering.append(...Object.entries(GATHERINGS).map(([name, { title }]) => new Option(title, name)));
-    this.labels = new Map([this.x, this.y, this.figure, this.gathering].map((select, i) => [select, element("label", {}, ["across", "up", "figure", "of several"][i], select)]));
+    this.labels = new Map([this.x, this.y, this.figure, this.group, this.gathering].map((select, i) => [select, element("label", {}, LABELS[i], select)]));
     this.root = element("div", { class: "picture-choice" }, this.kinds.root, ...this.labels.values());
     this.#arrange();
   }
@@ -40,6 +43,9 @@ export class PictureChoice {
     this.#known = key;
     this.kind = columns.paths.length > 1 ? "map" : columns.paths.length ? "scatter" : "histogram";
     fill(this.figure, columns, columns.figures, FIRST_FIGURE);
+    const words = columns.paths.filter((path) => columns.describe(path).options);
+    this.group.replaceChildren(...words.map((path) => new Option(columns.describe(path).title, path)), new Option("one", ""));
+    this.group.value = words[0] ?? "";
     this.#offerAxes();
     this.#arrange();
   }
@@ -67,7 +73,11 @@ export class PictureChoice {
       return new Histogram(runs.map((run, i) => ({ run, state: states[i], value: values[i] })), describe(this.figure));
     }
     const [x, y] = [shown(this.x), shown(this.y)];
-    if (this.kind === "scatter") return new Scatter(runs.map((run, i) => ({ run, state: states[i], x: x[i], y: y[i] })), describe(this.x), describe(this.y));
+    if (this.kind === "scatter") {
+      const told = this.group.value ? table.column(this.group.value) : [];
+      const groups = this.group.value ? new WordCells([...new Set(told)], describe(this.group).options) : null;
+      return new Scatter(runs.map((run, i) => ({ run, state: states[i], x: x[i], y: y[i], group: told[i] })), describe(this.x), describe(this.y), groups);
+    }
     const values = shown(this.figure);
     const points = runs.map((run, i) => ({ run, state: states[i], x: x[i], y: y[i], value: typeof values[i] === "number" ? values[i] : null }));
     const map = new HeatMap(points, describe(this.x), describe(this.y), describe(this.figure), this.gathering.value);
@@ -90,7 +100,7 @@ export class PictureChoice {
     const names = isMap ? paths : [...paths, ...figures];
     const isOther = this.#axesOf !== this.kind;
     this.#axesOf = this.kind;
-    fill(this.x, this.columns, names, isMap ? paths[1] : (paths[0] ?? figures[0]));
+    fill(this.x, this.columns, names, isMap ? paths[1] : (paths.find((path) => !this.columns.describe(path).options) ?? paths[0] ?? figures[0]));
     fill(this.y, this.columns, names, isMap ? paths[0] : this.figure.value, isOther);
     if (this.x.value === this.y.value && names.length > 1) this.y.value = names.find((name) => name !== this.x.value);
   }
@@ -98,12 +108,12 @@ export class PictureChoice {
   #arrange() {
     this.kinds.show(this.kind);
     const shown = this.#shown();
-    for (const select of [this.x, this.y, this.figure]) this.labels.get(select).hidden = !shown.includes(select);
+    for (const select of [this.x, this.y, this.figure, this.group]) this.labels.get(select).hidden = !shown.includes(select);
     this.labels.get(this.gathering).hidden = true;
   }
 
   #shown() {
-    return { map: [this.x, this.y, this.figure], scatter: [this.x, this.y], histogram: [this.figure], refused: [] }[this.kind];
+    return { map: [this.x, this.y, this.figure], scatter: [this.x, this.y, ...(this.group.options.length > 1 ? [this.group] : [])], histogram: [this.figure], refused: [] }[this.kind];
   }
 
   #select(label) {

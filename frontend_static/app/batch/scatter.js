@@ -4,14 +4,18 @@ import { plainScale } from "./scales.js";
 
 const NEAR_PX = 12;
 const MANY = 2000;
+const GROUPS = ["series-link", "series-torque", "series-stiffness", "series-deflection", "overlay-50", "overlay-800"];
+const FONT = '12px system-ui, -apple-system, "Segoe UI", sans-serif';
 const MOVES = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 };
 
-/** Each run a point: a dot if it is done, × if it ended early. */
+/** Each run a point: a dot if it is done, × if it ended early; in the colour of its group, if runs are told apart by a word. */
 export class Scatter {
   hasLegend = false;
 
-  /** @param {{run, state, x, y}[]} points values as shown @param {object} x @param {object} y described, see columns.js */
-  constructor(points, x, y) {
+  /** @param {{run, state, x, y, group?}[]} points values as shown @param {object} x @param {object} y described, see columns.js
+   *  @param {WordCells|null} groups the words of `group` */
+  constructor(points, x, y, groups = null) {
+    this.groups = groups;
     const there = points.filter((point) => point.x !== null && point.y !== null && point.state !== "refused");
     this.x = { ...x, scale: plainScale(there.map((point) => point.x), x) };
     this.y = { ...y, scale: plainScale(there.map((point) => point.y), y) };
@@ -25,23 +29,45 @@ export class Scatter {
   paint(ctx, { left, top, width, height }, palette) {
     const isMany = this.points.length > MANY;
     const radius = isMany ? 1.5 : 2.75;
-    ctx.fillStyle = isMany ? palette.faint("series-link", 0.5) : palette.faint("series-link", 0.8);
+    const colours = (this.groups?.values ?? [null]).map((_, place) => GROUPS[place % GROUPS.length]);
+    const [fills, strokes] = [colours.map((name) => palette.faint(name, isMany ? 0.5 : 0.8)), colours.map((name) => palette.colour(name))];
+    const placeOf = new Map((this.groups?.values ?? []).map((value, place) => [value, place]));
+    const of = ({ group }) => placeOf.get(group) ?? 0;
     const pixel = ([u, v]) => [left + u * width, top + (1 - v) * height];
-    for (const { at, state } of this.points) {
-      if (state !== "done") continue;
-      const [x, y] = pixel(at);
+    for (const point of this.points) {
+      if (point.state !== "done") continue;
+      const [x, y] = pixel(point.at);
+      ctx.fillStyle = fills[of(point)];
       ctx.beginPath();
       ctx.arc(x, y, radius, 0, 2 * Math.PI);
       ctx.fill();
     }
-    ctx.strokeStyle = palette.colour("series-disturbance");
     ctx.lineWidth = 1.5;
-    for (const { at, state } of this.points) {
-      if (state === "done") continue;
-      const [x, y] = pixel(at);
+    for (const point of this.points) {
+      if (point.state === "done") continue;
+      const [x, y] = pixel(point.at);
+      ctx.strokeStyle = this.groups ? strokes[of(point)] : palette.colour("series-disturbance");
       line(ctx, x - 3.5, y - 3.5, x + 3.5, y + 3.5);
       line(ctx, x - 3.5, y + 3.5, x + 3.5, y - 3.5);
     }
+  }
+
+  /** The groups by colour, in a line above the points. */
+  above(ctx, { left, top }, palette) {
+    if (!this.groups) return;
+    ctx.font = FONT;
+    ctx.textAlign = "left";
+    ctx.textBaseline = "middle";
+    let x = left;
+    this.groups.texts.forEach((text, place) => {
+      ctx.fillStyle = palette.colour(GROUPS[place % GROUPS.length]);
+      ctx.beginPath();
+      ctx.arc(x + 5, top - 11, 4, 0, 2 * Math.PI);
+      ctx.fill();
+      ctx.fillStyle = palette.colour("text");
+      ctx.fillText(text, x + 14, top - 10);
+      x += 30 + ctx.measureText(text).width;
+    });
   }
 
   hit(u, v, { width, height }) {
@@ -64,9 +90,10 @@ export class Scatter {
     return at;
   }
 
-  words({ run, state, x, y }) {
+  words({ run, state, x, y, group }) {
     const side = ({ label, unit }, value) => `${label} ${written(value)} ${unit}`.trim();
-    return [side(this.x, x), side(this.y, y), `run ${run}${state === "ended" ? ", ended early" : ""}`];
+    const own = this.groups ? [this.groups.texts[this.groups.values.indexOf(group)] ?? String(group)] : [];
+    return [...own, side(this.x, x), side(this.y, y), `run ${run}${state === "ended" ? ", ended early" : ""}`];
   }
 
   run({ run }) {
