@@ -30,10 +30,13 @@ def grid(path: str, low: float, high: float, count: int) -> dict[str, Any]:
     return {"kind": "grid", "path": path, "low": low, "high": high, "count": count}
 
 
-def computed(server: Server, name: str, *vary: dict[str, Any], **more: Any) -> str:
-    """Start a batch of short runs over REST and return its id, once it is done."""
-    scenario = server.get("/api/scenarios/nominal").json() | {"duration_s": 1.0}
-    document = {"name": name, "scenario": scenario, "vary": list(vary)} | more
+def nominal(server: Server, **fields: Any) -> dict[str, Any]:
+    return dict(server.get("/api/scenarios/nominal").json()) | {"duration_s": 1.0} | fields
+
+
+def computed(server: Server, name: str, scenario: dict[str, Any], *vary: dict[str, Any]) -> str:
+    """Start a batch over REST and return its id, once it is done."""
+    document = {"name": name, "scenario": scenario, "vary": list(vary)}
     answer = server.post("/api/batches", document)
     answer.raise_for_status()
     batch = str(answer.json()["id"])
@@ -44,13 +47,25 @@ def computed(server: Server, name: str, *vary: dict[str, Any], **more: Any) -> s
 @pytest.fixture(scope="module")
 def mapped(browser_server: Server) -> str:
     """A batch over two fields, all of whose runs are done."""
-    return computed(browser_server, "wrong inertia", grid(LINK, 0.05, 0.2, 6), grid(BANDWIDTH, 40.0, 120.0, 5))
+    scenario = nominal(browser_server)
+    return computed(
+        browser_server, "wrong inertia", scenario, grid(LINK, 0.05, 0.2, 6), grid(BANDWIDTH, 40.0, 120.0, 5)
+    )
 
 
 @pytest.fixture(scope="module")
 def partly_refused(browser_server: Server) -> str:
     """A batch whose last runs ask for a stiffness outside of the end stops."""
-    return computed(browser_server, "soft stop", grid(SOFTEST, 20.0, 300.0, 8), grid(LINK, 0.05, 0.2, 2))
+    scenario = nominal(browser_server)
+    return computed(browser_server, "soft stop", scenario, grid(SOFTEST, 20.0, 300.0, 8), grid(LINK, 0.05, 0.2, 2))
+
+
+@pytest.fixture(scope="module")
+def partly_ended(browser_server: Server) -> str:
+    """A batch with heavy links, which a motor without limits drives out of the spring's law."""
+    scenario = browser_server.get("/api/scenarios/paper_fig2").json() | {"duration_s": 2.0}
+    scenario["actuator"]["motor"] |= {"peak_torque": 5000.0, "continuous_torque": 5000.0}
+    return computed(browser_server, "no limits", scenario, grid(LINK, 0.1, 4.0, 16))
 
 
 def batch_view(page: Page, batch: str = "") -> None:
@@ -202,6 +217,22 @@ def test_refused_runs_are_counted_and_listed_with_the_reason(
     page.locator(".unwell tbody button").first.click()
     expect(page.locator("#batch-run .run-state")).to_contain_text("refused")
     expect(page.get_by_role("button", name="Load into live session")).to_be_disabled()
+
+
+def test_runs_that_ended_early_are_marked_and_say_why(running: Server, open_page: OpenPage, partly_ended: str) -> None:
+    page = open_page(running)
+    batch_view(page, partly_ended)
+    ended = running.get(f"/api/batches/{partly_ended}").json()["counts"]["ended"]
+    assert 0 < ended < 16
+    expect(page.locator(".batch-head")).to_contain_text(f"{ended} ended early")
+    expect(page.locator(".picture-choice [data-value=scatter]")).to_have_attribute("aria-checked", "true")
+    page.locator(".batch-canvas").focus()
+    for _ in range(16):
+        page.keyboard.press("ArrowRight")
+    expect(page.locator("#batch-main .result-readout")).to_contain_text("ended early")
+    page.keyboard.press("Enter")
+    expect(page.locator("#batch-run .run-state")).to_contain_text("ended early: stopped at t =")
+    expect(page.locator("#batch-run")).to_have_attribute("data-simulated", "15")
 
 
 def test_a_batch_under_way_is_cancelled_and_deleted(running: Server, open_page: OpenPage, mapped: str) -> None:

@@ -19,6 +19,7 @@ export const GATHERINGS = {
 /** Two varied fields and a figure: a colour for each cell; × where runs ended early, / where they were refused. */
 export class HeatMap {
   hasLegend = true;
+  keys = [];
 
   /** @param {{run, state, x, y, value}[]} points values as shown @param {object} x @param {object} y @param {object} figure described,
    *  see columns.js @param {string} gathering */

@@ -1,11 +1,11 @@
 import { compact } from "../quantity.js";
-import { line } from "./plot_axes.js";
+import { hatched } from "./plot_key.js";
 import { NumberScale, endsOf } from "./scales.js";
 
 const BARS = 32;
 const WIDE = 50; // times the least: from here on the axis is logarithmic
 const MOVES = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 };
-const HATCH_PX = 6;
+const [DONE, ENDED] = ["series-link", "warning"];
 
 /** How often a figure has which value: bars of the runs that are done, hatched on top of them those that ended early. */
 export class Histogram {
@@ -29,20 +29,21 @@ export class Histogram {
     const most = endsOf(this.bars.map(({ runs }) => runs.length))[1];
     this.x = { ...figure, scale };
     this.y = { title: "runs", scale: new NumberScale(0, Math.max(1, 1.06 * most)) };
+    const hasEnded = this.bars.some(({ ended }) => ended > 0);
+    this.keys = hasEnded ? [{ text: "done", colour: DONE, shape: "bar" }, { text: "ended early", colour: ENDED, shape: "hatched" }] : [];
     this.about = `How many of ${there.length} runs have which ${figure.title}.`;
   }
 
   paint(ctx, { left, top, width, height }, palette) {
     const wide = width / BARS;
-    ctx.lineWidth = 1;
     for (const { place, runs, ended } of this.bars) {
       if (!runs.length) continue;
       const x = left + place * wide;
       const tall = (count) => this.y.scale.at(count) * height;
       const done = runs.length - ended;
-      ctx.fillStyle = palette.faint("series-link", 0.8);
+      ctx.fillStyle = palette.faint(DONE, 0.8);
       ctx.fillRect(x + 0.5, top + height - tall(done), wide - 1, tall(done));
-      if (ended) hatched(ctx, x + 0.5, top + height - tall(runs.length), wide - 1, tall(ended), palette.colour("series-disturbance"));
+      if (ended) hatched(ctx, x + 0.5, top + height - tall(runs.length), wide - 1, tall(ended), palette.colour(ENDED));
     }
   }
 
@@ -80,15 +81,4 @@ export class Histogram {
   #filled(bar) {
     return bar?.runs.length ? bar : null;
   }
-}
-
-function hatched(ctx, x, y, width, height, colour) {
-  ctx.save();
-  ctx.strokeStyle = colour;
-  ctx.strokeRect(x + 0.5, y + 0.5, Math.max(0, width - 1), Math.max(0, height - 1));
-  ctx.beginPath();
-  ctx.rect(x, y, width, height);
-  ctx.clip();
-  for (let at = -height; at < width; at += HATCH_PX) line(ctx, x + at, y + height, x + at + height, y);
-  ctx.restore();
 }

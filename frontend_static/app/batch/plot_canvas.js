@@ -1,16 +1,17 @@
 import { element, setText } from "../element.js";
 import { Tip } from "../tip.js";
 import { drawAxes, leftOf } from "./plot_axes.js";
+import { drawKey } from "./plot_key.js";
 
 const PAD = { left: 58, right: 22, top: 14, bottom: 46 };
-const GROUPS_TOP = 24;
+const KEY_TOP = 24;
 const LEGEND_PX = 92;
 const MOST_LEFT = 0.25; // of the width, for the words on an axis
 
 /**
  * A plot on a canvas: axes, a picture in them, and spots of it that are read under the pointer or by the arrow keys.
  *
- * A picture has `x`, `y` {scale, title}, `hasLegend`, `about` in words, `paint(ctx, box, palette)`, `legend(ctx, box, palette)`, perhaps `above(…)` for a line over it,
+ * A picture has `x`, `y` {scale, title}, `hasLegend`, `about` in words, `paint(ctx, box, palette)`, `legend(ctx, box, palette)`, `keys` (plot_key.js),
  * `hit(u, v, box)` and `move(spot, key)`: a spot or null, `where(spot)`: its [u, v], 0 to 1 from the lower left, `words(spot)`:
  * lines, `run(spot)`: the number of a run in it, and `spotOf(run)`.
  */
@@ -67,7 +68,7 @@ export class PlotCanvas {
     if (!picture) return;
     const left = Math.min(MOST_LEFT * width, Math.max(PAD.left, leftOf(ctx, picture)));
     const right = picture.hasLegend ? LEGEND_PX : PAD.right;
-    const top = picture.above ? GROUPS_TOP : PAD.top;
+    const top = picture.keys.length ? KEY_TOP : PAD.top;
     this.box = { left, top, width: Math.max(10, width - left - right), height: Math.max(10, height - top - PAD.bottom) };
     ctx.save();
     ctx.beginPath();
@@ -76,7 +77,7 @@ export class PlotCanvas {
     picture.paint(ctx, this.box, palette);
     ctx.restore();
     drawAxes(ctx, this.box, picture, palette);
-    picture.above?.(ctx, this.box, palette);
+    drawKey(ctx, this.box, picture.keys, palette);
     if (picture.hasLegend) picture.legend(ctx, this.box, palette);
     const marked = this.run === null ? null : picture.spotOf(this.run);
     if (marked !== null) this.#ring(ctx, marked, 9);

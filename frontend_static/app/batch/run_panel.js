@@ -91,9 +91,8 @@ export class RunPanel {
 
   /** @param {object} found its values, and beside them its row of the results, as far as it is computed */
   #show(found, columns) {
-    const { state, reason, values, time_s: time } = found;
-    const early = state === "ended" && typeof time === "number" ? ` at ${compact(time)} s` : "";
-    setText(this.state, `${STATES[state] ?? state}${early}${reason ? `: ${reason}` : ""}`);
+    const { state, reason, values } = found;
+    setText(this.state, `${STATES[state] ?? state}${reason ? `: ${reason}` : ""}`);
     this.root.dataset.state = state;
     this.#fill(this.values, Object.entries(values).map(([path, value]) => this.#line(columns, path, value)));
     this.#fill(this.figures, state === "refused" ? [] : columns.figures.filter((name) => name in found).map((name) => this.#line(columns, name, found[name])));

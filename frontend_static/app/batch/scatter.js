@@ -1,11 +1,11 @@
 import { written } from "./heat_map.js";
-import { line } from "./plot_axes.js";
+import { crossed } from "./plot_key.js";
 import { plainScale } from "./scales.js";
 
 const NEAR_PX = 12;
 const MANY = 2000;
 const GROUPS = ["series-link", "series-torque", "series-stiffness", "series-deflection", "overlay-50", "overlay-800"];
-const FONT = '12px system-ui, -apple-system, "Segoe UI", sans-serif';
+const ENDED = "warning";
 const MOVES = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 };
 
 /** Each run a point: a dot if it is done, × if it ended early; in the colour of its group, if runs are told apart by a word. */
@@ -23,6 +23,8 @@ export class Scatter {
     this.points = there.map((point) => ({ ...point, at: [this.x.scale.at(point.x), this.y.scale.at(point.y)] })).filter(({ at }) => placed(at));
     this.points.sort((a, b) => a.at[0] - b.at[0] || a.at[1] - b.at[1]);
     this.ofRun = new Map(this.points.map((point) => [point.run, point]));
+    this.keys = (groups?.texts ?? []).map((text, place) => ({ text, colour: GROUPS[place % GROUPS.length], shape: "dot" }));
+    if (this.points.some(({ state }) => state !== "done")) this.keys.push({ text: "ended early", colour: groups ? "text" : ENDED, shape: "cross" });
     this.about = `${y.title} of ${this.points.length} runs over ${x.title}.`;
   }
 
@@ -46,28 +48,9 @@ export class Scatter {
     for (const point of this.points) {
       if (point.state === "done") continue;
       const [x, y] = pixel(point.at);
-      ctx.strokeStyle = this.groups ? strokes[of(point)] : palette.colour("series-disturbance");
-      line(ctx, x - 3.5, y - 3.5, x + 3.5, y + 3.5);
-      line(ctx, x - 3.5, y + 3.5, x + 3.5, y - 3.5);
+      ctx.strokeStyle = this.groups ? strokes[of(point)] : palette.colour(ENDED);
+      crossed(ctx, x, y, 3.5);
     }
-  }
-
-  /** The groups by colour, in a line above the points. */
-  above(ctx, { left, top }, palette) {
-    if (!this.groups) return;
-    ctx.font = FONT;
-    ctx.textAlign = "left";
-    ctx.textBaseline = "middle";
-    let x = left;
-    this.groups.texts.forEach((text, place) => {
-      ctx.fillStyle = palette.colour(GROUPS[place % GROUPS.length]);
-      ctx.beginPath();
-      ctx.arc(x + 5, top - 11, 4, 0, 2 * Math.PI);
-      ctx.fill();
-      ctx.fillStyle = palette.colour("text");
-      ctx.fillText(text, x + 14, top - 10);
-      x += 30 + ctx.measureText(text).width;
-    });
   }
 
   hit(u, v, { width, height }) {
