@@ -1,5 +1,6 @@
 """Batches over REST: estimated, started, watched, cancelled; their results by pages or whole. Workers plan and read them."""
 
+import asyncio
 import json
 from collections.abc import Awaitable
 from typing import Annotated, Any, Literal, TypeVar
@@ -153,7 +154,7 @@ async def batch_of(request: Request) -> Batch:
     """Return the body of a request as a batch. Raises Problem."""
     body = await body_of(request, LARGEST_DOCUMENT)
     try:
-        return Batch.model_validate_json(json.dumps(body))
+        return await asyncio.to_thread(lambda: Batch.model_validate_json(json.dumps(body)))
     except ValidationError as error:
         raise from_validation(error, Batch, consequence="No batch was started.") from error
 

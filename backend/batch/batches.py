@@ -202,14 +202,14 @@ class Batches:
         running = self._running = Running(
             begun, self.folder_of(row), self.engine, self.results, self._limits, self._changed, self._clock
         )
+        final: Row | None = None
         try:
             await self._put(begun)
-            await running.run()
-            running.row = replace(running.row, ended_at=text_of(self._now()))
-            await self._put(running.row)
+            final = replace(await running.run(), ended_at=text_of(self._now()))
+            await self._put(final)
         except asyncio.CancelledError:  # the server stops
             with suppress(Problem):
-                await asyncio.to_thread(self._catalogue.put, running.so_far())
+                await asyncio.to_thread(self._catalogue.put, final or running.so_far())
             raise
         finally:
             self._running = None
@@ -232,7 +232,7 @@ class Batches:
                 await asyncio.sleep(RETRY_S)
             else:
                 break
-        self._news.tell(row.id, row.state, _document(row, self._running)["progress"]["share"])
+        self._news.tell(row.id, row.state, 0.0 if self._running is None else self._running.progress.share)
 
     async def _left_over(self) -> Sequence[Row]:
         while True:
@@ -260,7 +260,9 @@ class Batches:
 
 
 def _document(row: Row, running: Running | None) -> Document:
-    return listed(row) if running is None or running.row.id != row.id else running.document()
+    return (
+        running.document() if running is not None and running.row.id == row.id and row.state in ACTIVE else listed(row)
+    )
 
 
 def _new_id(now: datetime) -> str:

@@ -15,10 +15,10 @@ class Progress:
         self,
         runs: int,
         parts: int,
-        workers: int,
         kept: dict[str, int],
         kept_parts: int,
         clock: Callable[[], float] = time.monotonic,
+        workers: int = 1,
     ) -> None:
         self.runs, self.parts, self.parts_done = runs, parts, kept_parts
         self.counts = Counter(dict.fromkeys(STATES, 0) | kept)

@@ -59,7 +59,7 @@ class Running:
             "counts": dict(self.progress.counts), "parts_done": self.progress.parts_done, "rate": self.progress.rate,
             "engine": self._engine.name,
         }  # fmt: skip
-        seconds = self.row.seconds + self._clock() - self._begun_s if self.row.state == "running" else self.row.seconds
+        seconds = self.row.seconds + self._clock() - self._begun_s
         return replace(self.row, seconds=seconds, summary=self.row.summary | facts)
 
     def cancel(self) -> None:
@@ -68,8 +68,8 @@ class Running:
         if self._work is not None:
             self._work.cancel()
 
-    async def run(self) -> None:
-        """Compute what is missing; `row` then says what became of it. Cancelled, it ends the parts under way first."""
+    async def run(self) -> Row:
+        """Compute what is missing and return what became of it. Cancelled, it ends the parts under way first."""
         self._work = asyncio.create_task(self._compute())
         if self._is_cancelled:
             self._work.cancel()
@@ -80,7 +80,7 @@ class Running:
             await asyncio.wait({self._work})
             raise
         state, reason = self._outcome(self._work)
-        self.row = replace(self.so_far(), state=state, reason=reason)
+        return replace(self.so_far(), state=state, reason=reason)
 
     async def _compute(self) -> None:
         document = await asyncio.to_thread(self._folder.document)
@@ -99,7 +99,7 @@ class Running:
         self._limits.check_kept(self._size)
 
     def _progress(self, counts: dict[str, int], parts: int) -> Progress:
-        return Progress(self.row.runs, self.row.parts, self._engine.workers, counts, parts, self._clock)
+        return Progress(self.row.runs, self.row.parts, counts, parts, self._clock, self._engine.workers)
 
     def _outcome(self, work: asyncio.Task[None]) -> tuple[str, str]:
         if work.cancelled():

@@ -34,4 +34,4 @@ def bytes_of(columns: int, samples: int, keep: Keep) -> float:
 def part_size(runs: int, seconds: float, size: float, workers: int) -> int:
     """Return how many runs make a part, from what one of them takes [s] and [bytes]."""
     most = min(PART_S / seconds, PART_BYTES / size, MOST_RUNS, math.ceil(runs / (PARTS_A_WORKER * workers)))
-    return max(STEP, STEP * math.floor(most / STEP))
+    return STEP * max(1, math.ceil(most / STEP))

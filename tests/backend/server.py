@@ -15,7 +15,18 @@ import httpx
 START_LIMIT_S = 120.0  # the kernels may have to be compiled first
 END_LIMIT_S = 20.0
 LOOK_AGAIN_S = 0.02
-ROLES = ("control", "design", "analysis", "simulation", "recordings", "recorder", "archive", "tasks")
+ROLES = (
+    "control",
+    "design",
+    "analysis",
+    "simulation",
+    "recordings",
+    "recorder",
+    "archive",
+    "tasks",
+    "batch 1",
+    "batch 2",
+)
 KEPT_OF_A_NAME = 15
 Found = TypeVar("Found")
 

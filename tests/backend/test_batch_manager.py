@@ -83,6 +83,7 @@ class Bench:
         )  # fmt: skip
 
     async def create(self, key: str | None = None, seed: int = 0) -> str:
+        self.time_s += 1.0
         row, _ = await self.batches.create(document(seed), key)
         return row.id
 
@@ -324,17 +325,39 @@ def test_results_that_grow_beyond_what_they_may_take_fail_the_batch(tmp_path: Pa
     with_bench(tmp_path, work, engine, Limits(RUNS, 450.0, 2))
 
 
+def test_a_full_disk_fails_the_batch_with_the_reason_and_keeps_what_is_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept = BatchFolder.keep
+
+    def until_full(folder: BatchFolder, number: int, files: PartFiles) -> int:
+        if number == 3:
+            raise OSError(28, "No space left on device")
+        return kept(folder, number, files)
+
+    monkeypatch.setattr(BatchFolder, "keep", until_full)
+
+    async def work(bench: Bench) -> None:
+        batch = await bench.create()
+        found = await bench.ended(batch)
+        assert (found["state"], found["progress"]["done"]) == ("failed", 30)
+        assert "cannot be read or written: No space left on device" in found["reason"]
+        assert bench.parts(batch) == [0, 1, 2]
+
+    with_bench(tmp_path, work)
+
+
 def test_pages_are_told_each_state_and_progress_twice_a_second_at_most(tmp_path: Path) -> None:
     engine = FakeEngine()
     engine.held = set(range(10))
 
     async def work(bench: Bench) -> None:
-        batch = await bench.create()
+        await bench.create()
         for part, time_s in enumerate([0.1, 0.2, 0.6, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4, 1.5]):
             await until(lambda part=part: engine.asked[-1:] == [part])
-            bench.time_s = time_s
+            bench.time_s = 1.0 + time_s
             engine.held.remove(part)
-        await bench.ended(batch)
+        await until(lambda: bench.news[-1]["state"] == "done")
 
     heard = with_bench(tmp_path, work, engine).news
     assert [(news["state"], news["share"]) for news in heard] == [
@@ -344,7 +367,7 @@ def test_pages_are_told_each_state_and_progress_twice_a_second_at_most(tmp_path:
 
 def test_the_rate_leaves_out_the_start_of_the_workers_and_tells_the_time_left() -> None:
     time_s = 0.0
-    progress = Progress(RUNS, 10, 2, {"done": 20}, 2, lambda: time_s)
+    progress = Progress(RUNS, 10, {"done": 20}, 2, lambda: time_s, workers=2)
     assert (progress.rate, progress.document()["seconds_left"]) == (None, None)
     for now in (30.0, 31.0):
         time_s = now

@@ -1,0 +1,104 @@
+"""Parts computed by this machine's workers, and what a session knows of these."""
+
+import asyncio
+import io
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+import pyarrow.parquet as pq
+import pytest
+
+from backend.batch.engine import PartFailed, PartFiles, PartTask
+from backend.batch.local_engine import LocalEngine
+from backend.batch.part_files import part_files
+from backend.batch.sizes import MOST_RUNS, PART_BYTES, part_size
+from backend.compute.pool import Pool
+from vssea_core.batch.document import Batch, Grid
+from vssea_core.batch.part import run_part
+from vssea_core.batch.plan import BatchPlan
+from vssea_core.scenarios import NOMINAL
+
+RUNS = 4000
+GRID = Grid(kind="grid", path="reference.amplitude", low=0.1, high=0.5, count=RUNS)
+BATCH = Batch(scenario=NOMINAL.model_copy(update={"duration_s": 1.0}), vary=(GRID,))
+DOCUMENT = BATCH.model_dump_json()
+FEW = PartTask(DOCUMENT, 0, 40, 20)
+LONG = PartTask(DOCUMENT, 0, 0, RUNS)
+PATIENCE_S = 240.0
+
+
+def with_engine(work: Callable[[LocalEngine], Coroutine[Any, Any, Any]], workers: int = 1, idle_s: float = 60.0) -> Any:
+    async def run() -> Any:
+        engine = LocalEngine(workers, idle_s)
+        try:
+            return await asyncio.wait_for(work(engine), PATIENCE_S)
+        finally:
+            await engine.end()
+
+    return asyncio.run(run())
+
+
+def same(files: PartFiles) -> bool:
+    part = run_part(BatchPlan(BATCH), FEW.first, FEW.count)
+    assert part is not None
+    return files == part_files(part)
+
+
+def test_a_part_is_the_same_bits_in_a_worker_as_here() -> None:
+    files = with_engine(lambda engine: engine.run(FEW))
+    assert same(files)
+    assert files.counts == {"done": 20}
+    assert pq.read_table(io.BytesIO(files.rows))["run"].to_pylist() == list(range(40, 60))
+
+
+def test_a_cancelled_part_ends_and_the_worker_serves_the_next_one() -> None:
+    async def work(engine: LocalEngine) -> PartFiles:
+        await engine.run(FEW)
+        long = asyncio.create_task(engine.run(LONG))
+        await asyncio.sleep(0)
+        long.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await long
+        return await engine.run(FEW)
+
+    assert same(with_engine(work))
+
+
+def test_a_part_that_makes_no_sense_fails_with_its_reason() -> None:
+    wrong = Batch(vary=(Grid(kind="grid", path="no.field", low=0.0, high=1.0, count=3),)).model_dump_json()
+    with pytest.raises(PartFailed, match="no field of the scenario"):
+        with_engine(lambda engine: engine.run(PartTask(wrong, 0, 0, 3)))
+
+
+def test_workers_start_when_they_are_needed_and_end_when_they_are_idle() -> None:
+    async def work(engine: LocalEngine) -> list[int]:
+        pool = Pool()
+        pool.also(engine.process_ids)
+        assert engine.process_ids() == []
+        await engine.run(FEW)
+        assert pool.process_ids() == engine.process_ids()  # those that a session keeps off the rig's core
+        found = pool.process_ids()
+        while True:
+            if not engine.process_ids():
+                return found
+            await asyncio.sleep(0.01)
+
+    assert len(with_engine(work, workers=2, idle_s=0.05)) == 1
+
+
+@pytest.mark.parametrize(
+    ("runs", "seconds", "size", "workers", "expected"),
+    [
+        (1_000_000, 10_000 / 3e7, 200.0, 2, 4512),  # as long as a part may take
+        (1_000_000, 1e-6, 100.0, 2, MOST_RUNS),
+        (1_000_000, 1e-6, 1e6, 2, 16),  # large samples
+        (1_000_000, 100.0, 200.0, 2, 16),
+        (4_000, 1e-4, 200.0, 2, 256),  # few runs are shared by all workers
+        (1, 1e-4, 200.0, 2, 16),
+    ],
+)
+def test_a_part_is_as_large_as_its_time_its_bytes_and_its_workers_allow(
+    runs: int, seconds: float, size: float, workers: int, expected: int
+) -> None:
+    assert part_size(runs, seconds, size, workers) == expected
+    assert expected == 16 or expected * size <= PART_BYTES
