@@ -1,7 +1,7 @@
 import { element } from "../element.js";
 import { symbol } from "../parameters/symbol.js";
 
-const MOST = 40;
+const MOST = 150;
 
 /** A box that finds fields of the scenario by words, and a list of those found: arrow keys move, Enter or a click takes one. */
 export class FieldSearch {

@@ -53,7 +53,7 @@ function kindField(path, part, value, schema) {
   const kinds = schema.kinds(part);
   if (kinds.length < 2) return null;
   const options = kinds.map((kind) => ({ value: kind, text: BEING_OF.get(`${part} ${kind}`) ?? wordOf(kind) }));
-  return { path, value, title: "kind", label: `${titleOf(part)}: kind`, symbol: "", unit: "", options };
+  return { path, value, title: titleOf(part).toLowerCase(), label: `${titleOf(part)}: kind`, symbol: "", unit: "", options };
 }
 
 /** The path of a list's item without its number: the schema has one shape for all of them. */
