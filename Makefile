@@ -21,22 +21,27 @@ ADDRESS := $(if $(filter command,$(firstword $(origin HOST))),--host $(HOST)) \
 run: environment ## start the dashboard
 	@exec $(BIN)/vssea serve $(strip $(ADDRESS))
 
-# Beside each other: the browser leaves the processor idle while it waits, and the other tests do not.
+# Beside each other: the browser leaves the processor idle while it waits, and the other tests do not. What failed there is
+# run again, alone: only then does it say something of the program, and not of a machine with too much to do.
 test: test-environment chromium compiler ## run the tests
 	@$(MAKE) --no-print-directory --jobs 2 --output-sync=target tests-in-a-browser other-tests
+	@$(call tests,browser,"browser and not real_time",--last-failed --last-failed-no-failures none,[ $$? = 5 ])
+	@$(call tests,other,"not browser and not real_time",--last-failed --last-failed-no-failures none,[ $$? = 5 ])
 	@$(MAKE) --no-print-directory tests-in-real-time
 
-# 5: ARGS chose none of these.
+# $(4) says which ends are no failures. 1: tests failed; 5: there was none to run, since ARGS chose none of these.
+tests = $(BIN)/python -m pytest -o cache_dir=.pytest_cache/$(1) -m $(2) $(3) $(ARGS) || $(4)
+
 tests-in-a-browser:
-	@$(BIN)/python -m pytest -m "browser and not real_time" $(ARGS) || [ $$? = 5 ]
+	@$(call tests,browser,"browser and not real_time",,[ $$? = 1 -o $$? = 5 ])
 
 other-tests:
-	@$(BIN)/python -m pytest -m "not browser and not real_time" $(ARGS) || [ $$? = 5 ]
+	@$(call tests,other,"not browser and not real_time",,[ $$? = 1 -o $$? = 5 ])
 
 # Alone on the machine: watchdogs stop a rig whose computer is too busy for it, as they should.
 tests-in-real-time:
-	@$(BIN)/python -m pytest -m "real_time and not browser" $(ARGS) || [ $$? = 5 ]
-	@$(BIN)/python -m pytest -m "real_time and browser" $(ARGS) || [ $$? = 5 ]
+	@$(call tests,real_time,"real_time and not browser",,[ $$? = 5 ])
+	@$(call tests,real_time_browser,"real_time and browser",,[ $$? = 5 ])
 
 lint: test-environment ## check style, types and layers
 	$(BIN)/ruff check .

@@ -44,12 +44,15 @@ def serve(
     import uvicorn
 
     from backend.app import create_app
+    from backend.batch.start import EngineRefused
 
     settings = _settings(host=host, port=port, scenario=scenario)
     try:
         application = create_app(settings)
     except OSError as error:
         refuse(f"{settings.data_dir} cannot be the data folder: {error}; set VSSEA_DATA_DIR to a folder of your own")
+    except EngineRefused as refusal:
+        refuse(f"batches cannot be computed at {settings.batch_engine}: {refusal}")
     shown = f"[{settings.host}]" if ":" in settings.host else settings.host
     typer.echo(f"VSSEA on http://{shown}:{settings.port}/  (Ctrl+C ends it)")
     uvicorn.run(

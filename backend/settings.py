@@ -1,5 +1,6 @@
 """Settings of the server, as data: one list of name, default and help; environment variables VSSEA_... set them."""
 
+import re
 from pathlib import Path
 
 import platformdirs
@@ -9,6 +10,7 @@ from pydantic_settings import BaseSettings, SettingsConfigDict
 from vssea_core.scenarios import SCENARIOS
 
 DATABASES = ("sqlite:///", "postgresql://", "postgresql+psycopg://")
+SCHEDULER = re.compile(r"[a-z]+://[^\s/]+:\d+/?")
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
 
@@ -73,6 +75,13 @@ class Settings(BaseSettings):
                 "is no address of a database; expected sqlite:////folder/file.sqlite or postgresql://user:password@host/name"
             )
         return url
+
+    @field_validator("batch_engine")
+    @classmethod
+    def _known_engine(cls, address: str | None) -> str | None:
+        if address is not None and not SCHEDULER.fullmatch(address):
+            raise ValueError(f"{address!r} is no address of a Dask scheduler; expected such as tcp://127.0.0.1:8786")
+        return address
 
     @model_validator(mode="after")
     def _token_beyond_loopback(self) -> "Settings":

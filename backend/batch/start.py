@@ -37,10 +37,17 @@ class ServedBatches(Batches):
         await self._reader.stop()
 
 
+class EngineRefused(RuntimeError):
+    """The engine that the settings name cannot be had."""
+
+
 def engine_for(settings: Settings) -> Engine:
-    """Return the engine that the settings name."""
+    """Return the engine that the settings name. Raises EngineRefused."""
     if settings.batch_engine is None:
         return LocalEngine(settings.batch_workers or os.cpu_count() or 1)
     # Only a server with a cluster needs its library.
     made: Callable[[str], Engine] = importlib.import_module("backend.batch.dask_engine").DaskEngine
-    return made(settings.batch_engine)
+    try:
+        return made(settings.batch_engine)
+    except ValueError as refusal:
+        raise EngineRefused(str(refusal)) from refusal

@@ -2,17 +2,25 @@
 
 import asyncio
 import io
+import sys
 from collections.abc import Callable, Coroutine
+from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pyarrow.parquet as pq
 import pytest
+from pydantic import ValidationError
+from typer.testing import CliRunner
 
 from backend.batch.engine import PartFailed, PartFiles, PartTask
 from backend.batch.local_engine import LocalEngine
 from backend.batch.part_files import part_files
 from backend.batch.sizes import MOST_RUNS, PART_BYTES, part_size
+from backend.batch.start import engine_for
+from backend.cli import app
 from backend.compute.pool import Pool
+from backend.settings import Settings
 from vssea_core.batch.document import Batch, Grid
 from vssea_core.batch.part import run_part
 from vssea_core.batch.plan import BatchPlan
@@ -102,3 +110,27 @@ def test_a_part_is_as_large_as_its_time_its_bytes_and_its_workers_allow(
 ) -> None:
     assert part_size(runs, seconds, size, workers) == expected
     assert expected == 16 or expected * size <= PART_BYTES
+
+
+class NoCluster:
+    def __init__(self, address: str) -> None:
+        raise ValueError("a Dask cluster needs the package distributed")
+
+
+def test_a_server_without_the_engine_that_its_settings_name_says_so_and_does_not_start(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    module = ModuleType("backend.batch.dask_engine")
+    module.DaskEngine = NoCluster  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "backend.batch.dask_engine", module)
+    variables = {"VSSEA_DATA_DIR": str(tmp_path), "VSSEA_BATCH_ENGINE": "tcp://127.0.0.1:8786"}
+    refused = CliRunner().invoke(app, ["serve"], env=variables)
+    assert refused.exit_code != 0
+    assert "batches cannot be computed at tcp://127.0.0.1:8786: a Dask cluster needs" in refused.output
+
+
+def test_the_address_of_a_cluster_is_checked_and_this_machine_is_the_default() -> None:
+    with pytest.raises(ValidationError, match="is no address of a Dask scheduler; expected such as tcp://"):
+        Settings(batch_engine="localhost")
+    engine = engine_for(Settings(batch_workers=3))
+    assert (engine.name, engine.workers) == ("this machine, 3 workers", 3)
