@@ -20,6 +20,7 @@ export const KEYS = [
   { key: "s", shown: "Ctrl+S", does: "savePreset", text: "Save the preset", ctrl: true, whileTyping: false },
   { key: "1", shown: "1", does: "viewTune", text: "View: Tune" },
   { key: "2", shown: "2", does: "viewAnalyse", text: "View: Analyse" },
+  { key: "3", shown: "3", does: "viewBatch", text: "View: Batch" },
   { key: "4", shown: "4", does: "viewRecordings", text: "View: Recordings" },
   { key: "5", shown: "5", does: "viewPresets", text: "View: Presets" },
   { key: "6", shown: "6", does: "viewHardware", text: "View: Hardware" },
@@ -35,6 +36,7 @@ export const ROW_KEYS = [
   { shown: "↑ ↓", text: "In the list of recordings: another one; Enter opens it, Space lays it over the one that you open" },
   { shown: "← → ↑ ↓", text: "Held on the jog pad: link left and right, stiffer and softer; letting go stops" },
   { shown: "← →", text: "On the bar of a replay: back and forth" },
+  { shown: "← → ↑ ↓", text: "In a map or a plot of a batch: read it; Enter shows the run" },
 ];
 
 const NOT_TYPING = new Set(["range", "radio", "checkbox", "button"]);

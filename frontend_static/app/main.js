@@ -1,6 +1,7 @@
 /** Puts the page together: one session, and the panels that show it and ask it for changes. */
 
 import { AnalyseView } from "./analyse/analyse_view.js";
+import { BatchView } from "./batch/batch_view.js";
 import { bindKeys } from "./keys.js";
 import { ConnectionBanner } from "./connection_banner.js";
 import { Baseline } from "./document/baseline.js";
@@ -93,6 +94,7 @@ const side = new SideTabs(document.getElementById("stability"), [
   { id: "pins", title: "Pinned", body: new PinPanel(pins, pinWindow).root },
 ]);
 new AnalyseView(document.getElementById("view-analyse"), { session, theme, views });
+const batch = new BatchView(document.getElementById("view-batch"), { session, theme, views, ask });
 new PresetsView(document.getElementById("view-presets"), { session, views });
 
 const recordings = new RecordingsView(document.getElementById("view-recordings"), { session, theme, views });
@@ -122,6 +124,7 @@ bindKeys({
   savePreset: () => parameters?.presets.save(),
   viewTune: () => views.show("tune"),
   viewAnalyse: () => views.show("analyse"),
+  viewBatch: () => views.show("batch"),
   viewRecordings: () => views.show("recordings"),
   viewPresets: () => views.show("presets"),
   viewHardware: () => views.show("hardware"),
@@ -145,7 +148,9 @@ function showCaptured({ by, excerpt }) {
 async function buildParameters() {
   try {
     const { scenario } = await rest("GET", "/api/schema");
-    const desk = { session, operator, tryFirst, edits, schema: new ParameterSchema(scenario), baseline: new Baseline(session.document) };
+    const schema = new ParameterSchema(scenario);
+    batch.take(schema);
+    const desk = { session, operator, tryFirst, edits, schema, baseline: new Baseline(session.document) };
     parameters = new ParameterList(document.getElementById("parameters"), desk);
   } catch (refusal) {
     session.note(`The parameters cannot be shown yet: ${refusal.message}`);

@@ -39,6 +39,13 @@ export class ParameterSchema {
     return this.#resolve(this.part(names.join("."))?.properties?.[name])?.maxItems ?? Infinity;
   }
 
+  /** @returns {string[]} the kinds that a part can be of, none if it has one shape */
+  kinds(part) {
+    const schema = this.part(part);
+    const options = (schema?.oneOf ?? schema?.anyOf ?? []).map((option) => this.#resolve(option));
+    return options.map((option) => option?.properties?.kind?.const).filter((kind) => kind !== undefined);
+  }
+
   /** @returns {object} a new part of a kind, all at its defaults */
   defaults(part, kind) {
     const values = this.names(part, kind).map((name) => [name, this.field(part, name, kind).default]);

@@ -1,7 +1,7 @@
 import { significant } from "../quantity.js";
 
 /** What each metric of a recording's summary is called, and its unit; others are shown by their name. */
-const METRICS = {
+export const METRICS = {
   peak_error: { label: "peak error", unit: "mrad", factor: 1e3 },
   rms_error: { label: "RMS error", unit: "mrad", factor: 1e3 },
   peak_torque: { label: "peak torque", unit: "N·m", factor: 1 },

@@ -10,7 +10,7 @@ const EVENTS_KEPT = 300;
  * The page's one picture of the session: snapshot, document, events and telemetry, all as the server said them.
  *
  * Events: `snapshot`, `hello`, `log` (the list of events changed), `connection` (open or lost), `presets`, `margins` (of the
- * tuning, newly computed), and those of `document` and `store`.
+ * tuning, newly computed), `batches` (news of one that runs), and those of `document` and `store`.
  */
 export class LiveSession extends EventTarget {
   #run = null; // which run of the server the samples and events came from
@@ -82,6 +82,7 @@ export class LiveSession extends EventTarget {
     else if (message.type === "margins") this.#takeMargins(message);
     else if (message.type === "event") this.#log([message.event]);
     else if (message.type === "recordings") this.dispatchEvent(new Event("recordings"));
+    else if (message.type === "batches") this.dispatchEvent(new CustomEvent("batches", { detail: message }));
     else if (message.type === "missed") this.note(`${message.samples} samples missed: this page was too slow`);
   }
 

@@ -1,0 +1,94 @@
+import { arrange, element, setText } from "../element.js";
+import { when } from "../presets/when.js";
+import { STATES, isActive, rateWords, runsWords, spanWords } from "./words.js";
+
+/** The list of batches: how far each is, at what rate, how long still; cancel, delete, and open one. */
+export class BatchList {
+  #lines = new Map();
+
+  /** @param {import("./batches.js").Batches} batches @param {object} ask AskDialog @param {(id: string) => void} open */
+  constructor(batches, ask, open) {
+    this.batches = batches;
+    this.ask = ask;
+    this.open = open;
+    this.list = element("ol", { class: "batch-list" });
+    this.problem = element("p", { class: "form-problem", role: "status", hidden: true });
+    this.empty = element("p", { class: "hint" }, "Loading…");
+    this.root = element("section", { class: "side-panel", "aria-label": "Batches" }, element("h2", {}, "Batches"), this.problem, this.list, this.empty);
+    batches.addEventListener("list", () => this.#show());
+    batches.addEventListener("problem", () => {
+      setText(this.problem, batches.problem);
+      this.problem.hidden = batches.problem === "";
+    });
+  }
+
+  /** Mark the one whose results are shown. */
+  mark(id) {
+    this.marked = id;
+    for (const [own, line] of this.#lines) line.mark(own === id);
+  }
+
+  #show() {
+    const { list, total } = this.batches;
+    const known = new Set(list.map(({ id }) => id));
+    for (const id of this.#lines.keys()) if (!known.has(id)) this.#lines.delete(id);
+    for (const batch of list) {
+      if (!this.#lines.has(batch.id)) this.#lines.set(batch.id, new BatchLine(this));
+      this.#lines.get(batch.id).show(batch);
+    }
+    arrange(this.list, list.map(({ id }) => this.#lines.get(id).root));
+    setText(this.empty, list.length ? `The newest ${list.length} of ${total}.` : "None yet. Choose fields above and start: its results are kept here.");
+    this.empty.hidden = list.length > 0 && total <= list.length;
+    this.mark(this.marked);
+  }
+
+  async remove(batch) {
+    const text = `${runsWords(batch.runs)} and their results. They cannot be brought back.`;
+    if (await this.ask.sure(`Delete ${batch.name}?`, text, "Delete")) this.batches.remove(batch.id);
+  }
+}
+
+/** One batch; its parts stay the same elements, so that focus is kept while it goes on. */
+class BatchLine {
+  constructor(list) {
+    this.title = element("button", { type: "button", class: "batch-title", click: () => list.open(this.batch.id) });
+    this.state = element("span", { class: "task-state" });
+    this.cancel = element("button", { type: "button", class: "quiet", click: () => list.batches.cancel(this.batch.id) }, "Cancel");
+    this.delete = element("button", { type: "button", class: "quiet", click: () => list.remove(this.batch) }, "Delete");
+    this.progress = element("progress", { max: 1, "aria-label": "Progress" });
+    this.words = element("p", { class: "task-reason" });
+    this.root = element("li", { class: "batch" }, element("div", { class: "task-line" }, this.title, this.state, this.cancel, this.delete), this.progress, this.words);
+  }
+
+  mark(isShown) {
+    if (isShown) this.title.setAttribute("aria-current", "true");
+    else this.title.removeAttribute("aria-current");
+  }
+
+  show(batch) {
+    this.batch = batch;
+    const active = isActive(batch);
+    this.root.dataset.state = batch.state;
+    this.root.dataset.id = batch.id;
+    setText(this.title, batch.name);
+    this.title.title = `${batch.name}, ${when(batch.created_at)}`;
+    const share = batch.progress?.share ?? 0;
+    setText(this.state, batch.state === "running" ? `${Math.floor(100 * share)} %` : (STATES[batch.state] ?? batch.state));
+    for (const button of [this.cancel, this.delete]) button.setAttribute("aria-label", `${button.textContent} ${batch.name}`);
+    this.cancel.hidden = !active;
+    this.delete.hidden = active;
+    this.progress.hidden = !active;
+    this.progress.value = share;
+    setText(this.words, lineWords(batch));
+  }
+}
+
+/** @returns {string} the second line: rate and time left while it runs, else when it was made and what became of it */
+export function lineWords(batch) {
+  if (batch.state === "running") {
+    const left = batch.seconds_left === null || batch.seconds_left === undefined ? "" : `${spanWords(batch.seconds_left)} left`;
+    return [runsWords(batch.runs), rateWords(batch.rate), left].filter(Boolean).join(" · ");
+  }
+  if (batch.state === "queued") return `${runsWords(batch.runs)} · waits for the batches before it`;
+  return [runsWords(batch.runs), when(batch.created_at), batch.state === "done" ? spanWords(batch.seconds) : batch.reason].filter(Boolean).join(" · ");
+}

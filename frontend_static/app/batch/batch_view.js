@@ -1,0 +1,56 @@
+import { element } from "../element.js";
+import { BatchForm } from "./batch_form.js";
+import { BatchList } from "./batch_list.js";
+import { BatchPage } from "./batch_page.js";
+import { Batches } from "./batches.js";
+
+const VIEW = "batch";
+
+/** The view Batch: what to run and the list of batches on the left, the results of one beside it; its address is #batch/<id>. */
+export class BatchView {
+  /** @param {HTMLElement} root @param {object} desk {session, theme, views, ask} */
+  constructor(root, { session, theme, views, ask }) {
+    this.views = views;
+    this.schema = null;
+    this.batches = new Batches(session);
+    this.form = new BatchForm(session, (document, key) => this.#start(document, key));
+    this.list = new BatchList(this.batches, ask, (id) => views.go(VIEW, id));
+    this.page = new BatchPage({ session, theme });
+    root.append(
+      element("div", { id: "batch-side", tabindex: "0", role: "group", "aria-label": "New batch, and the list of batches" }, this.form.root, this.list.root),
+      this.page.root,
+    );
+    this.batches.addEventListener("list", () => this.#listed());
+    views.addEventListener("change", () => this.#look());
+    this.#look();
+  }
+
+  /** Take the schema: fields have names and units from now on. */
+  take(schema) {
+    this.schema = schema;
+    this.form.take(schema);
+    this.#look();
+  }
+
+  async #start(document, key) {
+    const { id } = await this.batches.start(document, key);
+    if (this.views.shown === VIEW) this.views.go(VIEW, id);
+  }
+
+  #look() {
+    const isShown = this.views.shown === VIEW;
+    this.batches.isShown = isShown;
+    this.form.isShown = isShown;
+    if (!isShown || !this.schema) return;
+    this.page.open(this.views.path || null, this.schema);
+    this.list.mark(this.views.path);
+  }
+
+  #listed() {
+    const { path, shown } = this.views;
+    if (shown !== VIEW || !path) return;
+    const batch = this.batches.get(path);
+    if (batch) this.page.take(batch);
+    else if (this.batches.total <= this.batches.list.length) this.views.go(VIEW, "");
+  }
+}

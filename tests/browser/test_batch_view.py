@@ -1,0 +1,288 @@
+"""The view Batch in a real browser against a real server: defined, watched, read, a run of it looked at and loaded."""
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Page, expect
+
+from tests.backend.server import Server, until
+from tests.browser.waiting import wait_until
+
+expect.set_options(timeout=30_000)
+pytestmark = pytest.mark.browser
+OpenPage = Callable[..., Page]
+COMPILING_LIMIT_S = 400.0  # a new clone compiles the lanes first
+LINK, BANDWIDTH, SOFTEST = "actuator.link.inertia", "tuning.observer.bandwidth", "actuator.stiffness.softest"
+COLOURS = """() => {
+    const canvas = document.querySelector('.batch-canvas');
+    if (!canvas.width) return 0;
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    const colours = new Set();
+    for (let i = 0; i < data.length; i += 4) colours.add(`${data[i]},${data[i + 1]},${data[i + 2]}`);
+    return colours.size;
+}"""
+
+
+def grid(path: str, low: float, high: float, count: int) -> dict[str, Any]:
+    return {"kind": "grid", "path": path, "low": low, "high": high, "count": count}
+
+
+def nominal(server: Server, **fields: Any) -> dict[str, Any]:
+    return dict(server.get("/api/scenarios/nominal").json()) | {"duration_s": 1.0} | fields
+
+
+def computed(server: Server, name: str, scenario: dict[str, Any], *vary: dict[str, Any]) -> str:
+    """Start a batch over REST and return its id, once it is done."""
+    document = {"name": name, "scenario": scenario, "vary": list(vary)}
+    answer = server.post("/api/batches", document)
+    answer.raise_for_status()
+    batch = str(answer.json()["id"])
+    until(lambda: server.get(f"/api/batches/{batch}").json()["state"] == "done", COMPILING_LIMIT_S)
+    return batch
+
+
+@pytest.fixture(scope="module")
+def mapped(browser_server: Server) -> str:
+    """A batch over two fields, all of whose runs are done."""
+    scenario = nominal(browser_server)
+    return computed(
+        browser_server, "wrong inertia", scenario, grid(LINK, 0.05, 0.2, 6), grid(BANDWIDTH, 40.0, 120.0, 5)
+    )
+
+
+@pytest.fixture(scope="module")
+def partly_refused(browser_server: Server) -> str:
+    """A batch whose last runs ask for a stiffness outside of the end stops."""
+    scenario = nominal(browser_server)
+    return computed(browser_server, "soft stop", scenario, grid(SOFTEST, 20.0, 300.0, 8), grid(LINK, 0.05, 0.2, 2))
+
+
+@pytest.fixture(scope="module")
+def partly_ended(browser_server: Server) -> str:
+    """A batch with heavy links, which a motor without limits drives out of the spring's law."""
+    scenario = browser_server.get("/api/scenarios/paper_fig2").json() | {"duration_s": 2.0}
+    scenario["actuator"]["motor"] |= {"peak_torque": 5000.0, "continuous_torque": 5000.0}
+    return computed(browser_server, "no limits", scenario, grid(LINK, 0.1, 4.0, 16))
+
+
+def batch_view(page: Page, batch: str = "") -> None:
+    page.keyboard.press("3")
+    expect(page.locator("#tab-batch")).to_have_attribute("aria-selected", "true")
+    if batch:
+        page.locator(f".batch[data-id='{batch}'] .batch-title").click()
+        expect(page.locator(".batch-results")).to_be_visible()
+
+
+def vary(page: Page, words: str, path: str) -> None:
+    page.get_by_label("Field to vary").fill(words)
+    page.locator(f".field-options [data-path='{path}']").click()
+    expect(page.locator(f".variation[data-path='{path}']")).to_be_visible()
+
+
+def kind(page: Page, name: str) -> None:
+    page.locator(f".picture-choice [data-value='{name}']").click()
+
+
+def test_two_chosen_fields_are_estimated_started_watched_and_drawn(
+    running: Server, open_page: OpenPage, mapped: str
+) -> None:
+    page = open_page(running)
+    batch_view(page)
+    expect(page.get_by_role("button", name="Start")).to_be_disabled()
+    vary(page, "link inertia", LINK)
+    vary(page, "observer bandwidth", BANDWIDTH)
+    for field in page.locator(".variation").all():
+        field.get_by_label("number of values").fill("4")
+    expect(page.locator(".estimate dd").first).to_have_text("16")
+    expect(page.locator(".estimate dd").nth(1)).to_have_text(re.compile(r" s$"))
+    page.get_by_label("Name of the batch").fill("my map")
+    page.get_by_role("button", name="Start").click()
+    own = page.locator(".batch", has_text="my map")
+    expect(own.locator(".task-state")).to_have_text("done", timeout=60_000)
+    expect(page.locator(".batch-head")).to_contain_text("16 runs: 16 done.")
+    wait_until(page, f"() => ({COLOURS})() > 20")
+    asked = running.get("/api/batches?limit=1").json()["batches"][0]
+    document = running.get(f"/api/batches/{asked['id']}/document").json()
+    assert [(each["path"], each["count"]) for each in document["vary"]] == [(LINK, 4), (BANDWIDTH, 4)]
+    assert document["scenario"]["duration_s"] == 10.0
+
+
+def test_what_cannot_be_is_said_while_it_is_typed(running: Server, open_page: OpenPage) -> None:
+    page = open_page(running, tolerant=True)  # the browser itself logs the refusal
+    batch_view(page)
+    vary(page, "link inertia", LINK)
+    page.get_by_label("link inertia, lowest").fill("one")
+    expect(page.locator(".estimate .form-problem")).to_contain_text("expected a number")
+    page.get_by_label("link inertia, lowest").fill("-1")
+    expect(page.locator(".estimate .form-problem")).to_contain_text("log grid needs positive ends")
+    page.locator(".variation").get_by_role("radio", name="List").click()
+    page.get_by_label("link inertia, values").fill("0.1; 0,2; 0.3")
+    expect(page.locator(".estimate .form-problem")).to_be_hidden()
+    expect(page.locator(".estimate dd").first).to_have_text("3")
+
+
+def test_random_fields_are_drawn_together(running: Server, open_page: OpenPage) -> None:
+    page = open_page(running)
+    batch_view(page)
+    vary(page, "link inertia", LINK)
+    vary(page, "observer bandwidth", BANDWIDTH)
+    for field in page.locator(".variation").all():
+        field.get_by_role("radio", name="Random").click()
+    page.get_by_label("number of random draws").fill("250")
+    expect(page.locator(".estimate dd").first).to_have_text("250")
+
+
+def test_a_factor_says_what_the_range_is_of_the_present_value(running: Server, open_page: OpenPage) -> None:
+    page = open_page(running)
+    batch_view(page)
+    vary(page, "link inertia", LINK)
+    lowest = page.get_by_label("link inertia, lowest")
+    expect(lowest).to_have_value("0.05")
+    page.get_by_label("as factors of the present value").check()
+    expect(lowest).to_have_value("0.5")
+    page.get_by_label("as factors of the present value").uncheck()
+    expect(lowest).to_have_value("0.05")
+
+
+def test_a_run_is_read_by_keys_shown_and_loaded_into_the_live_session(
+    running: Server, open_page: OpenPage, mapped: str
+) -> None:
+    page = open_page(running)
+    batch_view(page, mapped)
+    wait_until(page, f"() => ({COLOURS})() > 20")
+    canvas = page.locator(".batch-canvas")
+    canvas.focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowUp")
+    read = page.locator("#batch-main .result-readout")
+    expect(read).to_contain_text("mrad")
+    run = int(re.search(r"run (\d+)", read.inner_text())[1])  # type: ignore[index]
+    page.keyboard.press("Enter")
+    expect(page.locator("#batch-run h2").first).to_have_text(f"Run {run}")
+    expect(page.locator("#batch-run")).to_have_attribute("data-simulated", str(run))
+    expect(page.locator("#batch-run canvas")).to_have_count(3)
+    expect(page.locator("#batch-run")).to_contain_text("RMS error")
+    known = running.get(f"/api/batches/{mapped}/runs/{run}").json()
+    page.get_by_role("button", name="Load into live session").click()
+    expect(page.locator("#batch-run .run-words")).to_have_text("It runs live now, from t = 0.")
+    loaded = running.get("/api/session").json()["scenario"]
+    assert loaded["actuator"]["link"]["inertia"] == known["values"][LINK]
+    assert loaded["tuning"]["observer"]["bandwidth"] == known["values"][BANDWIDTH]
+
+
+def test_a_clicked_run_is_kept_as_a_preset(running: Server, open_page: OpenPage, mapped: str) -> None:
+    page = open_page(running)
+    batch_view(page, mapped)
+    wait_until(page, f"() => ({COLOURS})() > 20")
+    area = page.locator(".batch-canvas").bounding_box()
+    assert area is not None
+    page.locator(".batch-canvas").click(position={"x": 0.5 * area["width"], "y": 0.5 * area["height"]})
+    name = page.get_by_label("Name of the preset")
+    expect(name).to_be_enabled()
+    name.fill("of a batch")
+    page.get_by_role("button", name="Keep as preset").click()
+    expect(page.locator("#batch-run .run-words")).to_contain_text("Kept as preset of a batch")
+    run = page.locator("#batch-run h2").first.inner_text().split()[1]
+    values = running.get(f"/api/batches/{mapped}/runs/{run}").json()["values"]
+    content = running.get("/api/presets/of%20a%20batch").json()["content"]
+    assert content["tuning"]["observer"]["bandwidth"] == values[BANDWIDTH]
+
+
+def test_every_picture_is_drawn_with_any_figure(running: Server, open_page: OpenPage, mapped: str) -> None:
+    page = open_page(running)
+    batch_view(page, mapped)
+    for name in ("map", "scatter", "histogram"):
+        kind(page, name)
+        canvas = page.locator(".batch-canvas")
+        expect(canvas).to_have_attribute("aria-label", re.compile("RMS error"))
+        wait_until(page, f"() => ({COLOURS})() > 3")
+    page.get_by_label("Figure").select_option("peak_torque")
+    expect(canvas).to_have_attribute("aria-label", re.compile(r"peak torque \[N·m\]"))
+
+
+def test_refused_runs_are_counted_and_listed_with_the_reason(
+    running: Server, open_page: OpenPage, partly_refused: str
+) -> None:
+    page = open_page(running)
+    batch_view(page, partly_refused)
+    counts = running.get(f"/api/batches/{partly_refused}").json()["counts"]
+    assert counts["refused"] > 0
+    expect(page.locator(".batch-head")).to_contain_text(f"{counts['refused']} refused")
+    kind(page, "refused")
+    expect(page.locator(".unwell tbody tr")).to_have_count(counts["refused"])
+    expect(page.locator(".unwell .why").first).to_contain_text("the end stops")
+    page.locator(".unwell tbody button").first.click()
+    expect(page.locator("#batch-run .run-state")).to_contain_text("refused")
+    expect(page.get_by_role("button", name="Load into live session")).to_be_disabled()
+
+
+def test_runs_that_ended_early_are_marked_and_say_why(running: Server, open_page: OpenPage, partly_ended: str) -> None:
+    page = open_page(running)
+    batch_view(page, partly_ended)
+    ended = running.get(f"/api/batches/{partly_ended}").json()["counts"]["ended"]
+    assert 0 < ended < 16
+    expect(page.locator(".batch-head")).to_contain_text(f"{ended} ended early")
+    expect(page.locator(".picture-choice [data-value=scatter]")).to_have_attribute("aria-checked", "true")
+    page.locator(".batch-canvas").focus()
+    for _ in range(16):
+        page.keyboard.press("ArrowRight")
+    expect(page.locator("#batch-main .result-readout")).to_contain_text("ended early")
+    page.keyboard.press("Enter")
+    expect(page.locator("#batch-run .run-state")).to_contain_text("ended early: stopped at t =")
+    expect(page.locator("#batch-run")).to_have_attribute("data-simulated", "15")
+
+
+def test_a_batch_under_way_is_cancelled_and_deleted(running: Server, open_page: OpenPage, mapped: str) -> None:
+    page = open_page(running)
+    batch_view(page)
+    scenario = running.get("/api/scenarios/nominal").json()
+    long = {"name": "long one", "scenario": scenario, "vary": [grid(LINK, 0.05, 0.2, 90_000)]}
+    running.post("/api/batches", long).raise_for_status()
+    own = page.locator(".batch", has_text="long one")
+    own.get_by_role("button", name="Cancel").click()
+    expect(own.locator(".task-state")).to_have_text("cancelled")
+    own.get_by_role("button", name="Delete").click()
+    page.locator(".ask-dialog").get_by_role("button", name="Delete").click()
+    expect(own).to_have_count(0)
+
+
+@pytest.mark.parametrize("width", [420, 820, 1366, 1920])
+def test_stop_is_never_covered_in_the_batch_view(running: Server, open_page: OpenPage, mapped: str, width: int) -> None:
+    page = open_page(running)
+    page.set_viewport_size({"width": width, "height": 800})
+    batch_view(page, mapped)
+    vary(page, "observer bandwidth", BANDWIDTH)
+    page.get_by_label("Field to vary").focus()
+    stop = page.locator("#stop")
+    expect(stop).to_be_in_viewport(ratio=1.0)
+    on_top = """(stop) => {
+        const { left, top, width, height } = stop.getBoundingClientRect();
+        return [[0.1, 0.1], [0.5, 0.5], [0.9, 0.9]].every(([u, v]) =>
+            document.elementFromPoint(left + u * width, top + v * height) === stop);
+    }"""
+    assert stop.evaluate(on_top)
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    page.keyboard.press("Escape")
+    expect(page.locator("#state-word")).to_have_text("Stopped")
+
+
+@pytest.mark.parametrize("colours", ["dark", "light"])
+def test_nothing_in_the_batch_view_hinders_people_who_use_assistive_technology(
+    running: Server, open_page: OpenPage, partly_refused: str, colours: str
+) -> None:
+    page = open_page(running, colours)
+    batch_view(page, partly_refused)
+    vary(page, "link inertia", LINK)
+    vary(page, "controller kind", "tuning.controller.kind")
+    expect(page.locator(".estimate.is-old")).to_have_count(0)
+    kind(page, "refused")
+    page.locator(".unwell tbody button").first.click()
+    for name in ("refused", "map", "scatter", "histogram"):
+        kind(page, name)
+        page.get_by_label("Field to vary").focus()
+        results = Axe().run(page, options={"resultTypes": ["violations"]})
+        grave = [entry for entry in results.response["violations"] if entry["impact"] in ("serious", "critical")]
+        assert [(entry["id"], [node["target"] for node in entry["nodes"]]) for entry in grave] == []
