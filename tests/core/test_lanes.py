@@ -1,12 +1,16 @@
 """Runs side by side equal the same runs alone, to the bit, whatever they are and in whatever order."""
 
 import itertools
+import re
 from typing import Any
 
+import numba
 import numpy as np
 import pytest
 
 from vssea_core.batch.engine import Outcome, run_alone, run_scenarios
+from vssea_core.batch.lane_access import LANES
+from vssea_core.batch.lanes import lanes_kernel
 from vssea_core.batch.numbers import NumbersOf
 from vssea_core.batch.runs import Runs
 from vssea_core.scenario import Scenario
@@ -132,3 +136,15 @@ def test_it_ends_as_soon_as_it_is_asked_to() -> None:
     told = itertools.count()
     assert run_scenarios([NOMINAL.model_copy(update={"duration_s": 0.1})] * 100, lambda done: next(told) < 2) is None
     assert next(told) == 3
+
+
+def test_the_loop_over_lanes_is_made_of_vectors() -> None:
+    """A branch into a library anywhere in the tick would leave it right, and several times slower."""
+    kernel = lanes_kernel(NumbersOf()(NOMINAL).variant)  # type: ignore[arg-type]
+    outcomes([NOMINAL.model_copy(update={"duration_s": 0.01})] * LANES)
+    anew = numba.njit(error_model="numpy")(kernel.py_func)  # what comes from the cache can no longer be read
+    anew.compile(kernel.signatures[0])
+    code = anew.inspect_llvm(anew.signatures[0])
+    in_lanes, alone = (len(re.findall(rf"fmul {kind}", code)) for kind in (r"<\d+ x double>", "double"))
+    assert in_lanes > 300
+    assert alone < 0.2 * in_lanes
