@@ -1,26 +1,31 @@
-"""Runs a second of batches of 10 s runs, side by side on all cores; beside a plain loop over the compiled single run."""
+"""Batches of 10 s runs by this machine's engine: runs a second, memory, growth; and rows against single runs, bit by bit."""
 
-import gc
+import asyncio
 import os
-import resource
 import time
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
+from collections.abc import Callable
+from pathlib import Path
 
+import numpy as np
+
+from backend.batch.engine import PartFiles, PartTask
+from backend.batch.local_engine import LocalEngine
+from backend.batch.part_run import parts_of, run_parts
 from vssea_core.batch.document import Batch, Draw, Sample, Uniform
 from vssea_core.batch.engine import run_alone
-from vssea_core.batch.part import run_part
+from vssea_core.batch.part import FIGURES, run_part
 from vssea_core.batch.plan import BatchPlan
 from vssea_core.scenario import Scenario
 from vssea_core.scenarios import NOMINAL, REALISTIC
 
 PART = 1024
 SINGLE = 100
+ROWS = 1000
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def plants(scenario: Scenario, count: int) -> Batch:
-    """Return a batch of uncertain plants: link inertia, motor damping and friction, spring."""
+    """Return a batch of uncertain plants: link inertia, motor damping, spring."""
     draws = tuple(
         Draw(path=path, distribution=Uniform(low=low, high=high), factor=True)
         for path, low, high in (
@@ -41,36 +46,38 @@ def tunings(scenario: Scenario, count: int) -> Batch:
     return Batch(scenario=scenario, vary=(Sample(count=count, draws=draws),))
 
 
-_plan: BatchPlan | None = None
+def references(scenario: Scenario, count: int) -> Batch:
+    """Return a batch of references: no two runs share their course."""
+    draws = (Draw(path="reference.amplitude", distribution=Uniform(low=0.1, high=0.5)),)
+    return Batch(scenario=scenario, vary=(Sample(count=count, draws=draws),))
 
 
-def _begin(document: str) -> None:
-    global _plan
-    _plan = BatchPlan(Batch.model_validate_json(document))
-    run_part(_plan, 0, 16)
-    gc.collect()
-    gc.freeze()
-    gc.disable()
+BATCHES: dict[str, Callable[[Scenario, int], Batch]] = {"plants": plants, "tunings": tunings, "references": references}
 
 
-def _part(first: int) -> tuple[int, int]:
-    assert _plan is not None  # noqa: S101
-    done = run_part(_plan, first, PART)
-    gc.collect()
-    return len(done.rows["state"]) if done else 0, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+def memory_mb(process: int) -> float:
+    """Return the most memory a process has held [MB]."""
+    status = Path(f"/proc/{process}/status").read_text()
+    return float(status.split("VmHWM:")[1].split()[0]) / 1024.0
 
 
-def measured(batch: Batch) -> tuple[float, float]:
-    """Return runs a second on all cores, and the peak memory [MB] of all its processes together."""
-    document = batch.model_dump_json()
-    count = BatchPlan(batch).count
-    with ProcessPoolExecutor(CORES, get_context("spawn"), _begin, (document,)) as workers:
-        list(workers.map(_part, [0] * 2 * CORES))  # every worker has begun
-        begun = time.perf_counter()
-        parts = list(workers.map(_part, range(0, count, PART)))
-        passed = time.perf_counter() - begun
-    assert sum(done for done, _ in parts) == count  # noqa: S101
-    return count / passed, max(memory for _, memory in parts) * CORES / 1024
+async def measured(engine: LocalEngine, batch: Batch) -> tuple[float, float]:
+    """Return runs a second of an engine that is warm, and the most memory of its processes together [MB]."""
+    document, count = batch.model_dump_json(), BatchPlan(batch).count
+    runs = 0
+
+    async def keep(_: PartTask, files: PartFiles) -> None:
+        nonlocal runs
+        runs += sum(files.counts.values())
+
+    await run_parts(engine, parts_of(document, min(count, 32 * CORES), 16), keep)  # kernels are compiled, or loaded
+    runs = 0
+    begun = time.perf_counter()
+    await run_parts(engine, parts_of(document, count, PART), keep)
+    passed = time.perf_counter() - begun
+    if runs != count:
+        raise RuntimeError(f"{runs} runs of {count}")
+    return count / passed, sum(map(memory_mb, engine.process_ids()))
 
 
 def single(scenario: Scenario) -> float:
@@ -82,20 +89,39 @@ def single(scenario: Scenario) -> float:
     return SINGLE / (time.perf_counter() - begun)
 
 
+def equal_rows(scenario: Scenario) -> int:
+    """Return how many of ROWS rows of a batch equal the single run of their scenario to the bit."""
+    plan = BatchPlan(plants(scenario, ROWS))
+    part = run_part(plan, 0, ROWS)
+    if part is None:
+        return 0
+    table = np.column_stack([np.asarray(part.rows[name]) for name in FIGURES])
+    return sum(run_alone(plan.scenario(i)).figures.tobytes() == table[i].tobytes() for i in range(ROWS))
+
+
+async def compare() -> None:
+    """Print the table."""
+    engine = LocalEngine(CORES)
+    try:
+        for scenario in (NOMINAL, REALISTIC):
+            alone = single(scenario)
+            print(f"{scenario.name}: plain loop over single runs {alone:.0f} runs/s on one core", flush=True)
+            for name, make in BATCHES.items():
+                rate, memory = await measured(engine, make(scenario, 10_000))
+                figures = f"{rate:.0f} runs/s on {CORES} cores, {rate / alone:.1f} x the loop, {memory:.0f} MB"
+                print(f"  10,000 {name}: {figures}", flush=True)
+            print(f"  rows equal to their single runs to the bit: {equal_rows(scenario)} of {ROWS}", flush=True)
+    finally:
+        await engine.end()
+    for count in (1_000, 10_000, 100_000):
+        engine = LocalEngine(CORES)
+        try:
+            rate, memory = await measured(engine, plants(NOMINAL, count))
+        finally:
+            await engine.end()
+        print(f"{count} nominal plants: {count / rate:.1f} s, {rate:.0f} runs/s, {memory:.0f} MB", flush=True)
+
+
 def main() -> None:
     """Print the table."""
-    for scenario in (NOMINAL, REALISTIC):
-        alone = single(scenario)
-        print(f"{scenario.name}: plain loop {alone:.0f} runs/s on one core", flush=True)
-        for name, batch in (("plants", plants(scenario, 10_000)), ("tunings", tunings(scenario, 10_000))):
-            rate, memory = measured(batch)
-            print(
-                f"  10,000 {name}: {rate:.0f} runs/s on {CORES} cores, {rate / alone:.1f} x the loop, {memory:.0f} MB",
-                flush=True,
-            )
-    for count in (1_000, 10_000, 100_000):
-        rate, memory = measured(plants(NOMINAL, count))
-        print(
-            f"{count} nominal plants: {count / rate:.1f} s, {1e3 * CORES / rate:.3f} ms a run and core, {memory:.0f} MB",
-            flush=True,
-        )
+    asyncio.run(compare())

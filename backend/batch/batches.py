@@ -228,7 +228,7 @@ class Batches:
             try:
                 await asyncio.to_thread(self._catalogue.put, row)
             except Problem as problem:
-                logger.warning("batch %s waits for the database: %s", row.id, problem.detail)
+                logger.info("batch %s waits for the database: %s", row.id, problem.detail)
                 await asyncio.sleep(RETRY_S)
             else:
                 break
@@ -239,7 +239,7 @@ class Batches:
             try:
                 rows = await asyncio.to_thread(self._catalogue.active)
             except Problem as problem:
-                logger.warning("batches wait for the database: %s", problem.detail)
+                logger.info("batches wait for the database: %s", problem.detail)
                 await asyncio.sleep(RETRY_S)
             else:
                 known = {row.id for row in self._waiting}

@@ -75,6 +75,14 @@ def here(monkeypatch: pytest.MonkeyPatch) -> Here:
     return engine
 
 
+@pytest.fixture(autouse=True)
+def interruptible() -> Iterator[None]:
+    """SIGINT raises KeyboardInterrupt, also where the tests run in the background of a shell, which ignores it there."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
     written = tmp_path / "batch.json"

@@ -270,15 +270,15 @@ def test_stop_works_while_a_dialog_asks(library: Server, open_page: OpenPage) ->
     until(lambda: library.get("/api/session").json()["state"] == "stopped")
 
 
-@pytest.mark.parametrize("width", [1920, 1366, 820, 420])
-def test_stop_is_never_covered_in_presets(library: Server, open_page: OpenPage, width: int) -> None:
+def test_stop_is_never_covered_in_presets(library: Server, open_page: OpenPage) -> None:
     page = open_page(library)
     presets(page)
-    page.set_viewport_size({"width": width, "height": 760})
-    for section in page.locator("#presets-side .section-button").all():
-        section.click()
-        expect(page.locator("#stop")).to_be_in_viewport(ratio=1.0)
-        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    for width in (1920, 1366, 820, 420):
+        page.set_viewport_size({"width": width, "height": 760})
+        for section in page.locator("#presets-side .section-button").all():
+            section.click()
+            expect(page.locator("#stop")).to_be_in_viewport(ratio=1.0)
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
 
 
 @pytest.mark.parametrize("colours", ["dark", "light"])

@@ -320,25 +320,23 @@ def test_a_log_of_a_rig_is_imported_with_its_headings_told(running: Server, open
     expect(page.locator(f"{SHOWN} .chart")).to_have_count(2)  # position and error: all else was not recorded
 
 
-@pytest.mark.parametrize("width", [1920, 1366, 820, 420])
-def test_stop_is_never_covered_in_recordings(
-    running: Server, open_page: OpenPage, recorded: tuple[str, str], width: int
-) -> None:
+def test_stop_is_never_covered_in_recordings(running: Server, open_page: OpenPage, recorded: tuple[str, str]) -> None:
     page = open_page(running)
-    page.set_viewport_size({"width": width, "height": 768})
-    for place in ("#recordings", f"#recordings/{recorded[0]}"):
-        page.evaluate("place => { location.hash = place; }", place)
-        expect(page.locator(f"{SHOWN} > :visible")).to_have_count(1)
-        expect(page.locator("#stop")).to_be_in_viewport(ratio=1.0)
-        middle = (
-            "() => { const { left, top, width, height } = document.getElementById('stop').getBoundingClientRect(); "
-        )
-        assert (
-            page.evaluate(middle + "return document.elementFromPoint(left + width / 2, top + height / 2).id; }")
-            == "stop"
-        )
-        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-        assert width < 800 or page.evaluate("document.documentElement.scrollHeight <= innerHeight")
+    for width in (1920, 1366, 820, 420):
+        page.set_viewport_size({"width": width, "height": 768})
+        for place in ("#recordings", f"#recordings/{recorded[0]}"):
+            page.evaluate("place => { location.hash = place; }", place)
+            expect(page.locator(f"{SHOWN} > :visible")).to_have_count(1)
+            expect(page.locator("#stop")).to_be_in_viewport(ratio=1.0)
+            middle = (
+                "() => { const { left, top, width, height } = document.getElementById('stop').getBoundingClientRect(); "
+            )
+            assert (
+                page.evaluate(middle + "return document.elementFromPoint(left + width / 2, top + height / 2).id; }")
+                == "stop"
+            )
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+            assert width < 800 or page.evaluate("document.documentElement.scrollHeight <= innerHeight")
 
 
 @pytest.mark.parametrize("colours", ["dark", "light"])

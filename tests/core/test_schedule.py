@@ -38,7 +38,8 @@ def test_between_the_rows_of_the_table_gains_are_those_of_a_design_made_there(tu
     made_there = row_at(prepare(tuning, 1e-3, (stiffness, stiffness)), tuning, stiffness)
     size = np.abs(made_there)
     x1, x3 = Law._fields.index("x1"), Law._fields.index("x3")
-    size[x1 : x1 + 2] = np.maximum(size[x1 : x1 + 2], size[x3 : x3 + 2])  # x1 passes through zero; x3 has its unit
+    # x1 and x3 pass through zero, and have one unit.
+    size[x1 : x1 + 2] = size[x3 : x3 + 2] = np.maximum(size[x1 : x1 + 2], size[x3 : x3 + 2])
     assert np.all(np.abs(table - made_there) <= 2e-4 * size + 1e-9)
 
 

@@ -16,6 +16,7 @@ from vssea_core.signals.smooth_step import faded_in, faded_out, risen, smooth_st
 
 HEAD = 8
 SETTLED = 50.0  # bandwidth times time after which a five-fold pole is settled to the last digit
+SLOWEST = 1e-12  # rad/s; a slower jog is none, and its quotients would not be numbers
 EASE_SHARE = 0.1  # share of a sweep over which it eases into its end frequency
 EASE = 14  # where a chirp's row holds the eight coefficients of that part
 FASTEST, SHARPEST, HARSHEST = 630.0 / 256.0, 2520.0 * (3.0 / 14.0) ** 3 / math.sqrt(7.0), 78.75
@@ -162,6 +163,8 @@ def plan_jog(row):
     """Set ramps and stop of a jog from the velocity it starts with; a short distance lowers the velocity it reaches."""
     velocity, distance = row[11], row[12]
     stop = math.inf
+    if abs(velocity) < SLOWEST:
+        velocity = 0.0
     if velocity != 0.0 and distance < math.inf:
         if covered(row, velocity) > distance:
             low, high = 0.0, 1.0

@@ -23,7 +23,7 @@ export class PictureChoice {
   constructor(changed) {
     this.changed = changed;
     this.kind = "map";
-    this.kinds = new Segmented("Shown", KINDS, (kind) => this.#choose(kind));
+    this.kinds = new Segmented("Picture", KINDS, (kind) => this.#choose(kind));
     this.x = this.#select("Across");
     this.y = this.#select("Up");
     this.figure = this.#select("Figure");
