@@ -226,10 +226,14 @@ def test_runs_that_ended_early_are_marked_and_say_why(running: Server, open_page
     assert 0 < ended < 16
     expect(page.locator(".batch-head")).to_contain_text(f"{ended} ended early")
     expect(page.locator(".picture-choice [data-value=scatter]")).to_have_attribute("aria-checked", "true")
+    wait_until(page, f"() => ({COLOURS})() > 3")
     page.locator(".batch-canvas").focus()
+    readout = page.locator("#batch-main .result-readout")
     for _ in range(16):
         page.keyboard.press("ArrowRight")
-    expect(page.locator("#batch-main .result-readout")).to_contain_text("ended early")
+        if "ended early" in readout.inner_text():
+            break
+    expect(readout).to_contain_text("ended early")
     page.keyboard.press("Enter")
     expect(page.locator("#batch-run .run-state")).to_contain_text("ended early: stopped at t =")
     run = page.locator("#batch-run h2").first.inner_text().split()[1]
