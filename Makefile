@@ -25,10 +25,12 @@ run: environment ## start the dashboard
 # run again, alone: only then does it say something of the program, and not of a machine with too much to do.
 test: test-environment chromium compiler ## run the tests
 	@$(MAKE) --no-print-directory --jobs 2 --output-sync=target tests-in-a-browser other-tests
-	@$(call tests,browser,"browser and not real_time",--last-failed --last-failed-no-failures none,[ $$? = 5 ])
-	@$(call tests,other,"not browser and not real_time",--last-failed --last-failed-no-failures none,[ $$? = 5 ])
+	@! grep -qs true $(call failed,browser) || $(call tests,browser,"browser and not real_time",$(AGAIN),[ $$? = 5 ])
+	@! grep -qs true $(call failed,other) || $(call tests,other,"not browser and not real_time",$(AGAIN),[ $$? = 5 ])
 	@$(MAKE) --no-print-directory tests-in-real-time
 
+failed = .pytest_cache/$(1)/v/cache/lastfailed
+AGAIN := --last-failed --last-failed-no-failures none
 # $(4) says which ends are no failures. 1: tests failed; 5: there was none to run, since ARGS chose none of these.
 tests = $(BIN)/python -m pytest -o cache_dir=.pytest_cache/$(1) -m $(2) $(3) $(ARGS) || $(4)
 
