@@ -355,7 +355,7 @@ def test_a_fault_is_told_with_its_number_and_kept_as_an_excerpt(
         expect(kept).to_be_enabled()
         kept.click()
         expect(page.locator("#tab-recordings")).to_have_attribute("aria-selected", "true")
-        expect(page.locator(".recording-title")).not_to_be_empty()
+        expect(page.locator("#view-recordings .recording-title")).not_to_be_empty()
     finally:
         emulator.control({"do": "clear"})
     page.locator("#tab-hardware").click()
