@@ -11,7 +11,10 @@ BENCHMARKS = {
         "time of stability and margin maps and of the report on one tuning, beside python-control",
     ),
     "stability": ("benchmarks.stability", "linear predictions against nonlinear simulations at 400 random points"),
-    "batch": ("benchmarks.batch", "runs a second of batches, their memory, growth; rows against single runs, bit by bit"),
+    "batch": (
+        "benchmarks.batch",
+        "runs a second of batches, their memory, growth; rows against single runs, bit by bit",
+    ),
     "cluster": ("benchmarks.batch_cluster", "a batch on this machine's engine and on a local Dask cluster"),
     "beside": ("benchmarks.batch_beside", "lateness of the live loop with and without a batch beside it"),
     "export": ("benchmarks.export", "one tick of the exported C controller, beside the compiled tick"),

@@ -37,7 +37,9 @@ def main() -> None:
                 found[beside].append(late)
                 words = "   ".join(f"{label} {value:.0f}" for label, value in late.items())
                 told = f", batch {rate:.0f} runs/s" if rate else ""
-                print(f"  {'batch' if beside else 'alone'}  lateness_us  {words}   overruns {overruns}{told}", flush=True)
+                print(
+                    f"  {'batch' if beside else 'alone'}  lateness_us  {words}   overruns {overruns}{told}", flush=True
+                )
     for beside, turns in found.items():
         medians = {label: float(np.median([turn[label] for turn in turns])) for label in turns[0]}
         words = "   ".join(f"{label} {value:.0f}" for label, value in medians.items())

@@ -94,7 +94,9 @@ def test_a_stability_map_is_drawn_and_read_by_the_keyboard(running: Server, open
     wait_until(page, f"() => ({PAINTED})() > 20")
     page.locator("#view-analyse .map-canvas").focus()
     page.keyboard.press("ArrowRight")
-    expect(page.locator("#view-analyse .result-readout")).to_have_text(re.compile(r"true / nominal stiffness .+ · stable: decay"))
+    expect(page.locator("#view-analyse .result-readout")).to_have_text(
+        re.compile(r"true / nominal stiffness .+ · stable: decay")
+    )
 
 
 def test_a_map_under_way_can_be_cancelled(running: Server, open_page: OpenPage) -> None:
