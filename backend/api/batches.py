@@ -2,19 +2,18 @@
 
 import asyncio
 import json
-from collections.abc import Awaitable
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Header, Query, Request, Response
 from fastapi.responses import FileResponse
 from pydantic import ValidationError
 
-from backend.api.reading import channels_in, named_file
+from backend.api.reading import channels_in, named_file, read
 from backend.api.resources import body_named, body_of
 from backend.batch.batches import Batches
 from backend.batch.catalogue import Row
-from backend.compute.pool import JobFailedError, JobRefusedError, Pool
-from backend.problem import Problem, from_validation, refused
+from backend.compute.pool import Pool
+from backend.problem import Problem, from_validation
 from vssea_core.batch.document import Batch
 
 LARGEST_DOCUMENT = 4_000_000
@@ -23,7 +22,6 @@ SIMULATION_LIMIT_S = 60.0
 MOST_ROWS = 20_000
 Document = dict[str, Any]
 State = Literal["queued", "running", "done", "cancelled", "failed"]
-Answer = TypeVar("Answer")
 
 
 def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
@@ -88,7 +86,7 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
     ) -> Response:
         """Return rows of the runs that are computed, in their order; without columns all of them."""
         path = str(batches.folder_of(await batches.row(batch)).path)
-        content = await read(batches.results.run("page", path, offset, limit, channels_in(columns) or None))
+        content = await read(batches.results.run("page", path, offset, limit, channels_in(columns) or None), "batch")
         return Response(content, media_type="application/json")
 
     @router.get("/{batch}/results.{form}")
@@ -106,8 +104,8 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
         """Return values, state and figures of one run; `waiting` until it is computed."""
         row = await found(batch, number)
         files = batches.folder_of(row)
-        values = await read(batches.plans.run("values_of", str(files.document_path), number))
-        kept = await read(batches.results.run("row", str(files.path), number, number // row.part_size))
+        values = await read(batches.plans.run("values_of", str(files.document_path), number), "batch")
+        kept = await read(batches.results.run("row", str(files.path), number, number // row.part_size), "batch")
         known = {} if kept is None else {name: value for name, value in kept.items() if name not in values}
         return {"run": number, "values": values, "state": "waiting", **known}
 
@@ -123,7 +121,7 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
         job = pool.simulation.run(
             "simulate_to_file", await scenario_of(batch, number), "binary", every, True, folder, time_limit_s=SIMULATION_LIMIT_S
         )  # fmt: skip
-        media_type, path = await read(job)
+        media_type, path = await read(job, "batch")
         return named_file(path, media_type)
 
     async def exported(batch: str, what: str, form: str) -> FileResponse:
@@ -134,7 +132,7 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
             )
         path = str(batches.folder_of(row).path)
         job = batches.results.run("export", path, what, form, folder, time_limit_s=EXPORT_LIMIT_S)
-        media_type, file = await read(job)
+        media_type, file = await read(job, "batch")
         return named_file(file, media_type, f"{row.id}-{what}.{form}")
 
     async def found(batch: str, number: int) -> Row:
@@ -145,7 +143,7 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
 
     async def scenario_of(batch: str, number: int) -> Any:
         files = batches.folder_of(await found(batch, number))
-        return await read(batches.plans.run("scenario_of", str(files.document_path), number))
+        return await read(batches.plans.run("scenario_of", str(files.document_path), number), "batch")
 
     return router
 
@@ -157,14 +155,3 @@ async def batch_of(request: Request) -> Batch:
         return await asyncio.to_thread(lambda: Batch.model_validate_json(json.dumps(body)))
     except ValidationError as error:
         raise from_validation(error, Batch, consequence="No batch was started.") from error
-
-
-async def read(job: Awaitable[Answer]) -> Answer:
-    """Return what a job returns. Raises Problem with its sentence if it was refused or failed."""
-    try:
-        return await job
-    except JobRefusedError as refusal:
-        sentence = str(refusal)
-        raise refused(f"{sentence[:1].upper()}{sentence[1:]}.") from refusal
-    except JobFailedError as failure:
-        raise Problem(503, "Not read", f"The batch could not be read: {failure}.") from failure

@@ -1,4 +1,4 @@
-"""What the routes of recordings share: asking their workers, files as answers, channels in an address."""
+"""What the routes of recordings and batches share: asking their workers, files as answers, channels in an address."""
 
 import re
 from collections.abc import Awaitable
@@ -17,15 +17,15 @@ Answer = TypeVar("Answer")
 NUMBER = re.compile(r"\d+")
 
 
-async def read(job: Awaitable[Answer]) -> Answer:
-    """Return what a job of a recordings' worker returns. Raises Problem with its sentence if it was refused or failed."""
+async def read(job: Awaitable[Answer], what: str = "recording") -> Answer:
+    """Return what a job that reads a `what` returns. Raises Problem with its sentence if it was refused or failed."""
     try:
         return await job
     except JobRefusedError as refusal:
         sentence = str(refusal)
         raise refused(f"{sentence[:1].upper()}{sentence[1:]}.") from refusal
     except JobFailedError as failure:
-        raise Problem(503, "Not read", f"The recording could not be read: {failure}.") from failure
+        raise Problem(503, "Not read", f"The {what} could not be read: {failure}.") from failure
 
 
 def named_file(path: str, media_type: str, name: str | None = None, **headers: str) -> FileResponse:
