@@ -1,4 +1,5 @@
 import { element } from "../element.js";
+import { fitted } from "../plots/fitted_canvas.js";
 import { niceTicks } from "../plots/nice_ticks.js";
 import { sequential, sequentialColour } from "./colour_scale.js";
 import { zeroContour } from "./contour.js";
@@ -29,13 +30,9 @@ export class MapCanvas {
   }
 
   draw() {
-    const { clientWidth: width, clientHeight: height } = this.root;
-    if (!width || !height) return;
-    const ratio = devicePixelRatio;
-    this.canvas.width = Math.round(width * ratio);
-    this.canvas.height = Math.round(height * ratio);
-    const ctx = this.canvas.getContext("2d");
-    ctx.scale(ratio, ratio);
+    const room = fitted(this.canvas, this.root);
+    if (!room) return;
+    const { ctx, width, height } = room;
     this.box = {
       left: PAD.left,
       top: PAD.top,

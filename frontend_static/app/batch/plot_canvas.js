@@ -1,4 +1,5 @@
 import { element, setText } from "../element.js";
+import { fitted } from "../plots/fitted_canvas.js";
 import { Tip } from "../tip.js";
 import { drawAxes, leftOf } from "./plot_axes.js";
 import { drawKey } from "./plot_key.js";
@@ -58,12 +59,9 @@ export class PlotCanvas {
   }
 
   draw() {
-    const { clientWidth: width, clientHeight: height } = this.root;
-    if (!width || !height) return;
-    this.canvas.width = Math.round(width * devicePixelRatio);
-    this.canvas.height = Math.round(height * devicePixelRatio);
-    const ctx = this.canvas.getContext("2d");
-    ctx.scale(devicePixelRatio, devicePixelRatio);
+    const room = fitted(this.canvas, this.root);
+    if (!room) return;
+    const { ctx, width, height } = room;
     const { picture, palette } = this;
     if (!picture) return;
     const left = Math.min(MOST_LEFT * width, Math.max(PAD.left, leftOf(ctx, picture)));
