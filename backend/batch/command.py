@@ -87,7 +87,7 @@ async def _compute(engine: "Engine", document: str, plan: dict[str, Any], beside
     from filelock import FileLock, Timeout
 
     from backend.batch.part_run import parts_of, run_parts
-    from backend.batch.progress import Progress
+    from backend.batch.progress import RunCounts
     from backend.batch.result_jobs import counts
     from backend.batch.terminal import shown
 
@@ -100,7 +100,7 @@ async def _compute(engine: "Engine", document: str, plan: dict[str, Any], beside
         refuse(f"{beside.path} is in use by another vssea batch; wait for it, or write elsewhere")
     try:
         parts, there = parts_of(document, plan["runs"], part_size), set(beside.folder.parts())
-        progress = Progress(plan["runs"], len(parts), counts(str(beside.path)), len(there))
+        progress = RunCounts(plan["runs"], len(parts), counts(str(beside.path)), len(there))
         with shown(progress) as show:
 
             async def keep(part: Any, files: Any) -> None:

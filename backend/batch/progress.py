@@ -8,7 +8,7 @@ from typing import Any
 STATES = ("done", "ended", "refused")
 
 
-class Progress:
+class RunCounts:
     """Counts the runs of one batch as its parts come in."""
 
     def __init__(

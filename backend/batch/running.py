@@ -2,10 +2,9 @@
 
 import asyncio
 import logging
-import time
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Any
 
 from backend.batch.catalogue import Row
 from backend.batch.engine import Engine, PartFailed, PartFiles, PartTask
@@ -13,17 +12,11 @@ from backend.batch.folder import BatchFolder
 from backend.batch.limits import Limits, TooLarge
 from backend.batch.listed import listed
 from backend.batch.part_run import parts_of, run_parts
-from backend.batch.progress import Progress
-from backend.compute.pool import JobFailedError, JobRefusedError
+from backend.batch.progress import RunCounts
+from backend.batch.times import Times
+from backend.compute.pool import JobFailedError, JobRefusedError, Jobs
 
 logger = logging.getLogger(__name__)
-
-
-class Results(Protocol):
-    """Where results are read: a worker process."""
-
-    async def run(self, job: str, *arguments: Any, time_limit_s: float = 60.0) -> Any:
-        """Return what the job returns."""
 
 
 class Running:
@@ -34,18 +27,18 @@ class Running:
         row: Row,
         folder: BatchFolder,
         engine: Engine,
-        results: Results,
+        results: Jobs,
         limits: Limits,
         changed: Callable[[], None],
-        clock: Callable[[], float] = time.monotonic,
+        times: Times,
     ) -> None:
         self.row, self._folder, self._engine, self._results = row, folder, engine, results
-        self._limits, self._changed, self._clock = limits, changed, clock
-        self._begun_s = clock()
+        self._limits, self._changed, self._clock = limits, changed, times.clock
+        self._begun_s = times.clock()
         self._size = 0
         self._work: asyncio.Task[None] | None = None
         self._is_cancelled = False
-        self.progress = self._progress({}, 0)
+        self.progress = self._counted({}, 0)
         self.ended = asyncio.Event()
         """Set when what became of it is kept."""
 
@@ -88,7 +81,7 @@ class Running:
         if there:
             counts = await self._results.run("counts", str(self._folder.path))
             self._size = await asyncio.to_thread(self._folder.size)
-            self.progress = self._progress(counts, len(there))
+            self.progress = self._counted(counts, len(there))
         missing = [part for part in parts_of(document, self.row.runs, self.row.part_size) if part.number not in there]
         await run_parts(self._engine, missing, self._keep)
 
@@ -98,8 +91,8 @@ class Running:
         self._changed()
         self._limits.check_kept(self._size)
 
-    def _progress(self, counts: dict[str, int], parts: int) -> Progress:
-        return Progress(self.row.runs, self.row.parts, counts, parts, self._clock, self._engine.workers)
+    def _counted(self, counts: dict[str, int], parts: int) -> RunCounts:
+        return RunCounts(self.row.runs, self.row.parts, counts, parts, self._clock, self._engine.workers)
 
     def _outcome(self, work: asyncio.Task[None]) -> tuple[str, str]:
         if work.cancelled():

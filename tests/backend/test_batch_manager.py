@@ -13,7 +13,8 @@ from backend.batch.catalogue import BatchCatalogue
 from backend.batch.engine import PartFailed, PartFiles, PartTask, WorkerLost
 from backend.batch.folder import BatchFolder
 from backend.batch.limits import Limits
-from backend.batch.progress import Progress
+from backend.batch.progress import RunCounts
+from backend.batch.times import Times
 from backend.problem import Problem
 from backend.store.database import Database
 from vssea_core.batch.document import Batch, Grid
@@ -79,7 +80,7 @@ class Bench:
         self.jobs, self.news = FakeJobs(folder), list[dict[str, Any]]()
         self.batches = Batches(
             folder / "batches", limits, BatchCatalogue(self.database), engine, self.jobs, self.jobs,
-            lambda: self.time_s, lambda: datetime(2026, 1, 1, tzinfo=UTC) + timedelta(seconds=self.time_s),
+            Times(lambda: self.time_s, lambda: datetime(2026, 1, 1, tzinfo=UTC) + timedelta(seconds=self.time_s)),
         )  # fmt: skip
 
     async def create(self, key: str | None = None, seed: int = 0) -> str:
@@ -367,7 +368,7 @@ def test_pages_are_told_each_state_and_progress_twice_a_second_at_most(tmp_path:
 
 def test_the_rate_leaves_out_the_start_of_the_workers_and_tells_the_time_left() -> None:
     time_s = 0.0
-    progress = Progress(RUNS, 10, {"done": 20}, 2, lambda: time_s, workers=2)
+    progress = RunCounts(RUNS, 10, {"done": 20}, 2, lambda: time_s, workers=2)
     assert (progress.rate, progress.document()["seconds_left"]) == (None, None)
     for now in (30.0, 31.0):
         time_s = now
