@@ -20,6 +20,8 @@ from backend.problem import Problem
 
 logger = logging.getLogger(__name__)
 RETRY_S = 10.0
+CANCEL_LIMIT_S = 10.0
+UNEXPECTED = "an internal error; the server's log has the details"
 
 
 class BatchQueue:
@@ -50,6 +52,7 @@ class BatchQueue:
     def start(self) -> None:
         """Go on with what a stop has left, then with what is added."""
         self._work = asyncio.create_task(self._run_all())
+        self._work.add_done_callback(_log_end)
 
     async def stop(self) -> None:
         """End the parts under way; the batch goes on at the next start."""
@@ -68,7 +71,7 @@ class BatchQueue:
         running = self.running
         if running is not None and running.row.id == batch:
             running.cancel()
-            await running.ended.wait()
+            await self._within_limit(running)
         elif waiting := next((row for row in self._waiting if row.id == batch), None):
             self._waiting.remove(waiting)
             cancelled = replace(waiting, state="cancelled", ended_at=self._times.text())
@@ -107,6 +110,9 @@ class BatchQueue:
             with suppress(Problem):
                 await asyncio.to_thread(self._catalogue.put, final or running.so_far())
             raise
+        except Exception:  # the others go on, whatever it is
+            logger.exception("batch %s failed", row.id)
+            await self._put_failed(running.so_far())
         finally:
             self.running = None
             running.ended.set()
@@ -119,7 +125,7 @@ class BatchQueue:
             self._news.progress(self.running.row.id, self.running.progress.share)
 
     async def _put(self, row: Row) -> None:
-        """Keep what became of a batch, as soon as the database can."""
+        """Keep what becomes of a batch, as soon as the database can."""
         while True:
             try:
                 await asyncio.to_thread(self._catalogue.put, row)
@@ -130,6 +136,28 @@ class BatchQueue:
                 break
         self._news.tell(row.id, row.state, 0.0 if self.running is None else self.running.progress.share)
 
+    async def _put_failed(self, row: Row) -> None:
+        try:
+            await self._put(replace(row, state="failed", reason=UNEXPECTED, ended_at=self._times.text()))
+        except Exception:  # it is taken up again at the next start
+            logger.exception("what became of batch %s is not kept", row.id)
+
+    async def _within_limit(self, running: Running) -> None:
+        """Wait until what became of a batch is kept. Raises Problem if the database takes too long."""
+        ended, limit = asyncio.create_task(running.ended.wait()), asyncio.create_task(self._times.sleep(CANCEL_LIMIT_S))
+        try:
+            await asyncio.wait({ended, limit}, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            ended.cancel()
+            limit.cancel()
+        if not running.ended.is_set():
+            raise Problem(
+                503,
+                "Not kept",
+                f"The batch {running.row.name!r} ends, but the database could not keep that within {CANCEL_LIMIT_S:g} s. "
+                "It is kept as soon as the database can be used; look again then.",
+            )
+
     async def _left_over(self) -> Sequence[Row]:
         while True:
             try:
@@ -137,6 +165,14 @@ class BatchQueue:
             except Problem as problem:
                 logger.info("batches wait for the database: %s", problem.detail)
                 await self._times.sleep(RETRY_S)
+            except Exception:  # new ones are computed nevertheless
+                logger.exception("the batches that a stop has left wait for the next start")
+                return []
             else:
                 known = {row.id for row in self._waiting}
                 return [row for row in rows if row.id not in known]
+
+
+def _log_end(work: asyncio.Task[None]) -> None:
+    if not work.cancelled() and (failure := work.exception()) is not None:
+        logger.error("no batch is computed until the server is restarted", exc_info=failure)

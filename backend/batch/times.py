@@ -2,9 +2,10 @@
 
 import asyncio
 import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from typing import Any
 
 
 def utc_now() -> datetime:
@@ -23,7 +24,7 @@ class Times:
 
     clock: Callable[[], float] = time.monotonic
     now: Callable[[], datetime] = utc_now
-    sleep: Callable[[float], Awaitable[object]] = asyncio.sleep
+    sleep: Callable[[float], Coroutine[Any, Any, object]] = asyncio.sleep
 
     def text(self) -> str:
         """Return the time of day as the API writes it."""

@@ -2,21 +2,26 @@
 
 import asyncio
 from collections.abc import Callable, Coroutine
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
 import pytest
+import sqlalchemy as sa
 
 from backend.batch.batches import Batches
-from backend.batch.catalogue import BatchCatalogue
+from backend.batch.catalogue import BatchCatalogue, Row
 from backend.batch.engine import PartFailed, PartFiles, PartTask, WorkerLost
 from backend.batch.folder import BatchFolder
 from backend.batch.limits import Limits
 from backend.batch.progress import RunCounts
+from backend.batch.queue import CANCEL_LIMIT_S, RETRY_S
 from backend.batch.times import Times
 from backend.problem import Problem
 from backend.store.database import Database
+from backend.store.tables import BATCHES
+from backend.store.troubles import LOCKED
 from vssea_core.batch.document import Batch, Grid
 
 LIMIT_S = 10.0
@@ -80,8 +85,12 @@ class Bench:
         self.jobs, self.news = FakeJobs(folder), list[dict[str, Any]]()
         self.batches = Batches(
             folder / "batches", limits, BatchCatalogue(self.database), engine, self.jobs, self.jobs,
-            Times(lambda: self.time_s, lambda: datetime(2026, 1, 1, tzinfo=UTC) + timedelta(seconds=self.time_s)),
+            Times(lambda: self.time_s, lambda: datetime(2026, 1, 1, tzinfo=UTC) + timedelta(seconds=self.time_s), self.sleep),
         )  # fmt: skip
+
+    async def sleep(self, seconds: float) -> None:
+        end_s = self.time_s + seconds
+        await until(lambda: self.time_s >= end_s)
 
     async def create(self, key: str | None = None, seed: int = 0) -> str:
         self.time_s += 1.0
@@ -346,6 +355,119 @@ def test_a_full_disk_fails_the_batch_with_the_reason_and_keeps_what_is_there(
         assert bench.parts(batch) == [0, 1, 2]
 
     with_bench(tmp_path, work)
+
+
+def puts(monkeypatch: pytest.MonkeyPatch, refuse: Callable[[Row], Exception | None]) -> None:
+    """Let the database raise what `refuse` returns for a batch's new state."""
+    put = BatchCatalogue.put
+
+    def or_refused(catalogue: BatchCatalogue, row: Row) -> None:
+        if error := refuse(row):
+            raise error
+        put(catalogue, row)
+
+    monkeypatch.setattr(BatchCatalogue, "put", or_refused)
+
+
+@pytest.mark.parametrize("state", ["running", "done"])
+def test_an_unexpected_error_of_the_database_fails_one_batch_and_the_next_one_is_computed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, state: str
+) -> None:
+    left = [RuntimeError("a statement that makes no sense")]
+    puts(monkeypatch, lambda row: left.pop() if left and row.state == state else None)
+
+    async def work(bench: Bench) -> None:
+        first, second = await bench.create(), await bench.create()
+        assert (await bench.ended(second))["state"] == "done"
+        found = await bench.ended(first)
+        assert (found["state"], "the server's log" in found["reason"]) == ("failed", True)
+
+    with_bench(tmp_path, work)
+
+
+def test_a_batch_whose_new_state_can_never_be_kept_does_not_hold_up_the_next_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first: list[str] = []
+    puts(monkeypatch, lambda row: RuntimeError("never") if row.id in first else None)
+
+    async def work(bench: Bench) -> None:
+        bench.engine.held = {0}
+        first.append(await bench.create())
+        bench.engine.held.clear()
+        assert (await bench.ended(await bench.create()))["state"] == "done"
+
+    with_bench(tmp_path, work)
+
+
+def test_a_damaged_record_is_one_failed_batch_and_the_others_go_on(tmp_path: Path) -> None:
+    engine = FakeEngine()
+    engine.held = {0}
+    begun: list[str] = []
+
+    async def until_stopped(bench: Bench) -> None:
+        begun.extend([await bench.create(), await bench.create()])
+        await until(lambda: engine.asked == [0])
+
+    bench = with_bench(tmp_path, until_stopped, engine)
+    with bench.database.begin() as connection:
+        connection.execute(sa.update(BATCHES).where(BATCHES.c.id == begun[0]).values(summary='{"paths": ['))
+    bench.database.close()
+
+    async def go_on(bench: Bench) -> None:
+        assert (await bench.ended(begun[1]))["state"] == "done"
+        found = (await bench.batches.list(None, 0, 10))["batches"]
+        assert {each["id"]: each["state"] for each in found} == {begun[0]: "failed", begun[1]: "done"}
+        assert "is damaged; delete the batch" in found[1]["reason"]
+        await bench.batches.delete(begun[0])
+        assert [each["id"] for each in (await bench.batches.list(None, 0, 10))["batches"]] == [begun[1]]
+
+    with_bench(tmp_path, go_on)
+
+
+def test_left_batches_that_cannot_be_asked_for_are_logged_and_new_ones_are_computed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def fail(_: BatchCatalogue) -> None:
+        raise RuntimeError("a statement that makes no sense")
+
+    monkeypatch.setattr(BatchCatalogue, "active", fail)
+
+    async def work(bench: Bench) -> None:
+        assert (await bench.ended(await bench.create()))["state"] == "done"
+
+    with_bench(tmp_path, work)
+    assert "wait for the next start" in caplog.text
+
+
+def test_cancelling_waits_for_the_database_no_longer_than_its_limit_and_is_kept_later(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    engine = FakeEngine()
+    engine.held = {1}
+    locked: list[Problem] = []
+    puts(monkeypatch, lambda row: replace(locked[0]) if locked else None)
+
+    async def work(bench: Bench) -> None:
+        batch = await bench.create()
+        await until(lambda: engine.asked[-1:] == [1])
+        locked.append(LOCKED)
+        cancelling = asyncio.create_task(bench.batches.cancel(batch))
+        await until(lambda: engine.ended == [1])
+        begun_s = bench.time_s
+        bench.time_s = begun_s + CANCEL_LIMIT_S - 0.1
+        for _ in range(100):
+            await asyncio.sleep(0)
+        assert not cancelling.done()
+        bench.time_s = begun_s + CANCEL_LIMIT_S
+        with pytest.raises(Problem, match="as soon as the database can be used") as problem:
+            await cancelling
+        assert problem.value.status == 503
+        locked.clear()
+        bench.time_s += RETRY_S
+        assert (await bench.ended(batch))["state"] == "cancelled"
+
+    with_bench(tmp_path, work, engine)
 
 
 def test_pages_are_told_each_state_and_progress_twice_a_second_at_most(tmp_path: Path) -> None:
