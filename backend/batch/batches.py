@@ -7,13 +7,14 @@ from typing import Any
 from backend.batch.admission import Admission, digest_of, same
 from backend.batch.catalogue import ACTIVE, BatchCatalogue, Row
 from backend.batch.engine import Engine
-from backend.batch.folder import BatchFolder
+from backend.batch.folder import BatchFolder, Division
 from backend.batch.limits import Limits
 from backend.batch.listed import listed
 from backend.batch.news import News, Tell
 from backend.batch.queue import BatchQueue
 from backend.batch.running import Running
 from backend.batch.times import Times
+from backend.batch.version import model_version
 from backend.compute.pool import Jobs
 from backend.problem import Problem
 from backend.store.troubles import Clash
@@ -96,7 +97,7 @@ class Batches:
     async def _kept(self, row: Row, document: str) -> tuple[Row, bool]:
         folder = self.folder_of(row)
         try:
-            await asyncio.to_thread(folder.create, document)
+            await asyncio.to_thread(folder.create, document, Division(row.part_size, model_version()))
         except OSError as error:
             raise Problem(507, "Not kept", f"{self.folder} cannot be written: {error.strerror or error}.") from error
         try:

@@ -1,13 +1,23 @@
-"""The files of one batch: its document, and two files a part at most. A file that is there is whole."""
+"""The files of one batch: its document, how it is divided, and two files a part at most. A file that is there is whole."""
 
+import json
 import os
 import shutil
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from backend.batch.engine import PartFiles
 
-DOCUMENT, ROWS, TRAJECTORIES = "batch.json", "part", "trajectories"
+DOCUMENT, DIVISION, ROWS, TRAJECTORIES = "batch.json", "parts.json", "part", "trajectories"
 UNFINISHED = ".new"
+
+
+@dataclass(frozen=True)
+class Division:
+    """What all parts of a batch have in common: the runs of each but the last one, and the version that computes them."""
+
+    part_size: int
+    version: str
 
 
 class BatchFolder:
@@ -16,10 +26,27 @@ class BatchFolder:
     def __init__(self, path: Path) -> None:
         self.path = path
 
-    def create(self, document: str) -> None:
-        """Make the folder with the batch's document in it. Raises OSError."""
+    def create(self, document: str, division: Division) -> None:
+        """Make the folder with the batch's document in it, and how it is divided. Raises OSError."""
         self.path.mkdir(parents=True)
+        self._write(DIVISION, json.dumps(asdict(division)).encode())
         self._write(DOCUMENT, document.encode())
+
+    def division(self) -> Division | None:
+        """Return how it is divided, None if that is not told. Raises OSError."""
+        try:
+            told = json.loads((self.path / DIVISION).read_bytes())
+            return Division(int(told["part_size"]), str(told["version"]))
+        except (FileNotFoundError, ValueError, KeyError, TypeError):
+            return None
+
+    def begin_anew(self, division: Division) -> None:
+        """Remove all parts, so that only those of another division are kept from now on. Raises OSError."""
+        for number in self.parts():
+            self.rows_of(number).unlink()
+        for path in self.path.glob(f"{TRAJECTORIES}-*.parquet"):
+            path.unlink()
+        self._write(DIVISION, json.dumps(asdict(division)).encode())
 
     @property
     def document_path(self) -> Path:

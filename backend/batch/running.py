@@ -8,15 +8,17 @@ from typing import Any
 
 from backend.batch.catalogue import Row
 from backend.batch.engine import Engine, PartFailed, PartFiles, PartTask
-from backend.batch.folder import BatchFolder
+from backend.batch.folder import BatchFolder, Division
 from backend.batch.limits import Limits, TooLarge
 from backend.batch.listed import listed
 from backend.batch.part_run import parts_of, run_parts
 from backend.batch.progress import RunCounts
 from backend.batch.times import Times
+from backend.batch.version import model_version
 from backend.compute.pool import JobFailedError, JobRefusedError, Jobs
 
 logger = logging.getLogger(__name__)
+ANEW = "computed from its start: the parts that were kept are of another version of the model"
 
 
 class Running:
@@ -73,17 +75,32 @@ class Running:
             await asyncio.wait({self._work})
             raise
         state, reason = self._outcome(self._work)
-        return replace(self.so_far(), state=state, reason=reason)
+        return replace(self.so_far(), state=state, reason=reason or self.row.reason)
 
     async def _compute(self) -> None:
         document = await asyncio.to_thread(self._folder.document)
+        parts = parts_of(document, self.row.runs, self.row.part_size)
         there = set(await asyncio.to_thread(self._folder.parts))
+        if not there.issuperset(range(len(parts))) and not await self._is_of_this_version(len(there)):
+            there = set()
         if there:
             counts = await self._results.run("counts", str(self._folder.path))
             self._size = await asyncio.to_thread(self._folder.size)
             self.progress = self._counted(counts, len(there))
-        missing = [part for part in parts_of(document, self.row.runs, self.row.part_size) if part.number not in there]
-        await run_parts(self._engine, missing, self._keep)
+        await run_parts(self._engine, [part for part in parts if part.number not in there], self._keep)
+
+    async def _is_of_this_version(self, kept: int) -> bool:
+        """Return whether parts that come now belong to the `kept` ones; else these are removed."""
+        division = Division(self.row.part_size, model_version())
+        if await asyncio.to_thread(self._folder.division) == division:
+            return True
+        await asyncio.to_thread(self._folder.begin_anew, division)
+        if kept:
+            logger.warning(
+                "batch %s is computed from its start: its %d parts are of another version", self.row.id, kept
+            )
+            self.row = replace(self.row, reason=ANEW)
+        return False
 
     async def _keep(self, part: PartTask, files: PartFiles) -> None:
         self._size += await asyncio.to_thread(self._folder.keep, part.number, files)

@@ -1,6 +1,7 @@
 """The manager of batches with an engine and workers that do what a test says, and with a clock that it moves."""
 
 import asyncio
+import json
 from collections.abc import Callable, Coroutine
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
@@ -18,6 +19,7 @@ from backend.batch.limits import Limits
 from backend.batch.progress import RunCounts
 from backend.batch.queue import CANCEL_LIMIT_S, RETRY_S
 from backend.batch.times import Times
+from backend.batch.version import model_version
 from backend.problem import Problem
 from backend.store.database import Database
 from backend.store.tables import BATCHES
@@ -267,6 +269,52 @@ def test_a_stopped_server_goes_on_with_the_parts_that_are_missing(tmp_path: Path
 
     again = with_bench(tmp_path, go_on)
     assert again.engine.asked == [1, *range(3, 10), *range(10), -1]
+
+
+@pytest.mark.parametrize("division", [None, {"part_size": PART_SIZE, "version": "another"}, {"part_size": 20}])
+def test_parts_of_another_version_or_division_are_computed_anew_from_the_first_on(
+    tmp_path: Path, division: dict[str, Any] | None
+) -> None:
+    engine = FakeEngine()
+    engine.held = {3}
+    begun: list[str] = []
+
+    async def until_stopped(bench: Bench) -> None:
+        begun.append(await bench.create())
+        await until(lambda: engine.asked[-1:] == [3])
+
+    with_bench(tmp_path, until_stopped, engine)
+    told = tmp_path / "batches" / begun[0] / "parts.json"
+    told.unlink() if division is None else told.write_text(json.dumps(json.loads(told.read_text()) | division))
+
+    async def go_on(bench: Bench) -> None:
+        found = await bench.ended(begun[0])
+        assert (found["state"], found["counts"]["done"]) == ("done", RUNS)
+        assert found["reason"].startswith("computed from its start")
+
+    assert with_bench(tmp_path, go_on).engine.asked == [*range(10), -1]
+    assert json.loads(told.read_text()) == {"part_size": PART_SIZE, "version": model_version()}
+
+
+def test_results_that_are_whole_stay_whatever_version_has_computed_them(tmp_path: Path) -> None:
+    engine = FakeEngine()
+    engine.held = {9}
+    begun: list[str] = []
+
+    async def until_stopped(bench: Bench) -> None:
+        begun.append(await bench.create())
+        await until(lambda: engine.asked[-1:] == [9])
+
+    with_bench(tmp_path, until_stopped, engine)
+    folder = tmp_path / "batches" / begun[0]
+    (folder / "part-00009.parquet").write_bytes(b"rows")
+    (folder / "parts.json").write_text(json.dumps({"part_size": PART_SIZE, "version": "another"}))
+
+    async def go_on(bench: Bench) -> None:
+        found = await bench.ended(begun[0])
+        assert (found["state"], found["reason"]) == ("done", "")
+
+    assert with_bench(tmp_path, go_on).engine.asked == [-1]
 
 
 def test_without_its_document_a_batch_fails_with_a_reason(tmp_path: Path) -> None:
