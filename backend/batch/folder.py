@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -9,7 +10,8 @@ from pathlib import Path
 from backend.batch.engine import PartFiles
 
 DOCUMENT, DIVISION, ROWS, TRAJECTORIES = "batch.json", "parts.json", "part", "trajectories"
-UNFINISHED = ".new"
+UNFINISHED, DAMAGED = ".new", ".damaged"
+PART = re.compile(rf"{ROWS}-(\d{{5,}})\.parquet")
 
 
 @dataclass(frozen=True)
@@ -66,15 +68,26 @@ class BatchFolder:
 
     def parts(self) -> list[int]:
         """Return the numbers of the parts that are there, in order."""
-        return _numbers(self.path, ROWS)
+        found = (PART.fullmatch(path.name) for path in self.path.iterdir())
+        return sorted(int(match[1]) for match in found if match)
+
+    def put_aside(self, number: int) -> None:
+        """Let a part be missing whose files cannot be read; they stay under another name. Raises OSError."""
+        for name in (_name(ROWS, number), _name(TRAJECTORIES, number)):
+            if (self.path / name).exists():
+                (self.path / name).replace(self.path / f"{name}{DAMAGED}")
 
     def rows_of(self, number: int) -> Path:
         """Return where the rows of a part are."""
         return self.path / _name(ROWS, number)
 
+    def trajectories_of(self, number: int) -> Path:
+        """Return where the samples of a part are, if any are kept."""
+        return self.path / _name(TRAJECTORIES, number)
+
     def trajectories(self) -> list[Path]:
         """Return the files of samples of the parts that are there, in order."""
-        paths = [self.path / _name(TRAJECTORIES, number) for number in self.parts()]
+        paths = [self.trajectories_of(number) for number in self.parts()]
         return [path for path in paths if path.exists()]
 
     def size(self) -> int:
@@ -97,10 +110,6 @@ class BatchFolder:
 
 def _name(kind: str, number: int) -> str:
     return f"{kind}-{number:05d}.parquet"
-
-
-def _numbers(folder: Path, kind: str) -> list[int]:
-    return sorted(int(path.stem.removeprefix(f"{kind}-")) for path in folder.glob(f"{kind}-*.parquet"))
 
 
 def _sync_folder(folder: Path) -> None:

@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -18,6 +19,7 @@ from backend.batch.version import model_version
 from backend.compute.pool import JobFailedError, JobRefusedError, Jobs
 
 logger = logging.getLogger(__name__)
+READ_LIMIT_S = 900.0
 ANEW = "computed from its start: the parts that were kept are of another version of the model"
 
 
@@ -80,14 +82,25 @@ class Running:
     async def _compute(self) -> None:
         document = await asyncio.to_thread(self._folder.document)
         parts = parts_of(document, self.row.runs, self.row.part_size)
-        there = set(await asyncio.to_thread(self._folder.parts))
-        if not there.issuperset(range(len(parts))) and not await self._is_of_this_version(len(there)):
-            there = set()
-        if there:
-            counts = await self._results.run("counts", str(self._folder.path))
+        kept = await self._kept()
+        missing = [part for part in parts if part.number not in kept]
+        if missing and not await self._is_of_this_version(len(kept)):
+            kept, missing = {}, parts
+        if kept:
             self._size = await asyncio.to_thread(self._folder.size)
-            self.progress = self._counted(counts, len(there))
-        await run_parts(self._engine, [part for part in parts if part.number not in there], self._keep)
+            self.progress = self._counted(dict(sum(map(Counter, kept.values()), Counter[str]())), len(kept))
+        await run_parts(self._engine, missing, self._keep)
+
+    async def _kept(self) -> dict[int, dict[str, int]]:
+        """Return the runs by state of each part that is there; one that cannot be read is put aside, as if it were missing."""
+        if not await asyncio.to_thread(self._folder.parts):
+            return {}
+        path = str(self._folder.path)
+        found = await self._results.run("counts_by_part", path, time_limit_s=READ_LIMIT_S)
+        for number in [number for number, counts in found.items() if counts is None]:
+            await asyncio.to_thread(self._folder.put_aside, number)
+            logger.warning("batch %s: part %d cannot be read and is computed again", self.row.id, number)
+        return {number: counts for number, counts in found.items() if counts is not None and number < self.row.parts}
 
     async def _is_of_this_version(self, kept: int) -> bool:
         """Return whether parts that come now belong to the `kept` ones; else these are removed."""

@@ -69,13 +69,18 @@ class FakeJobs:
         self.planned = 0
 
     async def run(self, job: str, *arguments: Any, time_limit_s: float = 60.0) -> Any:
-        if job == "counts":
-            return {"done": PART_SIZE * len(BatchFolder(Path(arguments[0])).parts())}
+        if job == "counts_by_part":
+            folder = BatchFolder(Path(arguments[0]))
+            return {number: _counts(folder.rows_of(number).read_bytes()) for number in folder.parts()}
         self.planned += 1
         return {
             "runs": RUNS, "part_size": PART_SIZE, "paths": ["seed"], "columns": ["run"], "bytes": 400, "seconds": 1.0,
             "refused": [], "all_refused": False,
         }  # fmt: skip
+
+
+def _counts(rows: bytes) -> dict[str, int] | None:
+    return {"done": PART_SIZE} if rows.startswith(b"r") else None
 
 
 class Bench:
@@ -294,6 +299,33 @@ def test_parts_of_another_version_or_division_are_computed_anew_from_the_first_o
 
     assert with_bench(tmp_path, go_on).engine.asked == [*range(10), -1]
     assert json.loads(told.read_text()) == {"part_size": PART_SIZE, "version": model_version()}
+
+
+def test_a_damaged_part_is_computed_again_and_a_stray_file_is_left_alone(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    engine = FakeEngine()
+    engine.held = {3}
+    begun: list[str] = []
+
+    async def until_stopped(bench: Bench) -> None:
+        begun.append(await bench.create())
+        await until(lambda: engine.asked[-1:] == [3])
+
+    with_bench(tmp_path, until_stopped, engine)
+    folder = tmp_path / "batches" / begun[0]
+    (folder / "part-00001.parquet").write_bytes(b"")
+    for stray in ("part-x.parquet", "part-7.parquet", "part-00002 (copy).parquet"):
+        (folder / stray).write_bytes(b"rows")
+
+    async def go_on(bench: Bench) -> None:
+        found = await bench.ended(begun[0])
+        assert (found["state"], found["counts"]["done"]) == ("done", RUNS)
+
+    assert with_bench(tmp_path, go_on).engine.asked == [1, *range(3, 10), -1]
+    assert (folder / "part-00001.parquet.damaged").read_bytes() == b""
+    assert (folder / "part-x.parquet").exists()
+    assert "part 1 cannot be read and is computed again" in caplog.text
 
 
 def test_results_that_are_whole_stay_whatever_version_has_computed_them(tmp_path: Path) -> None:
