@@ -6,7 +6,7 @@ from datetime import datetime
 from typing import Any
 
 from backend.batch.catalogue import Row
-from backend.batch.engine import Engine
+from backend.batch.engine import Engine, OutOfReach
 from backend.batch.limits import Limits
 from backend.batch.times import Times, text_of
 from backend.compute.pool import JobFailedError, JobRefusedError, Jobs
@@ -46,15 +46,15 @@ class Admission:
         )
 
     async def _planned(self, batch: Batch) -> Document:
-        workers = max(1, self._engine.workers)
         try:
+            await self._engine.connect()
             plan: Document = await self._plans.run(
-                "plan_batch", batch.model_dump_json(), workers, time_limit_s=PLAN_LIMIT_S
+                "plan_batch", batch.model_dump_json(), self._engine.threads, time_limit_s=PLAN_LIMIT_S
             )
         except JobRefusedError as refusal:
             sentence = str(refusal)
             raise refused(f"{sentence[:1].upper()}{sentence[1:]}.", FieldError("vary", None, sentence)) from refusal
-        except JobFailedError as failure:
+        except (JobFailedError, OutOfReach) as failure:
             raise Problem(503, "Not planned", f"The batch could not be planned: {failure}.") from failure
         return plan
 

@@ -1,6 +1,7 @@
 """The batches of a server: asked for, looked at, cancelled, deleted."""
 
 import asyncio
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +39,7 @@ class Batches:
     ) -> None:
         self.folder, self.engine, self.plans, self.results = folder, engine, plans, results
         self._limits, self._catalogue, self._news = limits, catalogue, News(times.clock)
+        self._turn = asyncio.Lock()  # what has ended is resumed or deleted
         self._admission = Admission(limits, engine, plans, times)
         self._queue = BatchQueue(folder, limits, catalogue, engine, results, self._news, times)
 
@@ -120,14 +122,29 @@ class Batches:
         await self._queue.cancel(batch)
         return await self.document(batch)
 
+    async def resume(self, batch: str) -> Document:
+        """Let a batch that has ended wait for its turn again, for the parts that are missing. Raises Problem."""
+        async with self._turn:
+            row = await self.row(batch)
+            if row.state in ACTIVE:
+                raise Problem(409, "Not ended", f"The batch {row.name!r} is {row.state}; there is nothing to resume.")
+            self._limits.check_waiting(self._queue.length)
+            await self._queue.ended(batch)
+            queued = replace(row, state="queued", reason="", ended_at=None)
+            await asyncio.to_thread(self._catalogue.put, queued)
+            self._queue.add(queued)
+            self._news.tell(queued.id, queued.state, listed(queued)["progress"]["share"])
+        return await self.document(batch)
+
     async def delete(self, batch: str) -> None:
         """Delete a batch that has ended, with its results. Raises Problem."""
-        row = await self.row(batch)
-        if row.state in ACTIVE:
-            raise Problem(409, "Not ended", f"The batch {row.name!r} is {row.state}; cancel it first.")
-        await asyncio.to_thread(self._catalogue.forget, batch)
-        await asyncio.to_thread(self.folder_of(row).delete)
-        self._news.tell(row.id, "deleted", 0.0)
+        async with self._turn:
+            row = await self.row(batch)
+            if row.state in ACTIVE:
+                raise Problem(409, "Not ended", f"The batch {row.name!r} is {row.state}; cancel it first.")
+            await asyncio.to_thread(self._catalogue.forget, batch)
+            await asyncio.to_thread(self.folder_of(row).delete)
+            self._news.tell(row.id, "deleted", 0.0)
 
 
 def _document(row: Row, running: Running | None) -> Document:

@@ -71,7 +71,7 @@ async def _run(document: str, output: Path, workers: int, address: str | None, o
     try:
         if address is not None:
             await engine.connect()
-            workers = engine.workers
+            workers = engine.threads
         plan = plan_batch(document, workers)
         if only_estimate:
             typer.echo(json.dumps({name: plan[name] for name in TOLD}, indent=2, ensure_ascii=False))

@@ -82,6 +82,11 @@ class BatchQueue:
                 raise
             self._news.tell(cancelled.id, cancelled.state, 0.0)
 
+    async def ended(self, batch: str) -> None:
+        """Wait until a batch that has just ended makes room for another one."""
+        if self.running is not None and self.running.row.id == batch:
+            await self.running.ended.wait()
+
     async def _run_all(self) -> None:
         self._waiting.extendleft(reversed(await self._left_over()))
         while True:

@@ -37,7 +37,7 @@ class Running:
         times: Times,
     ) -> None:
         self.row, self._folder, self._engine, self._results = row, folder, engine, results
-        self._limits, self._changed, self._clock = limits, changed, times.clock
+        self._limits, self._changed, self._clock, self._sleep = limits, changed, times.clock, times.sleep
         self._begun_s = times.clock()
         self._size = 0
         self._work: asyncio.Task[None] | None = None
@@ -89,7 +89,7 @@ class Running:
         if kept:
             self._size = await asyncio.to_thread(self._folder.size)
             self.progress = self._counted(dict(sum(map(Counter, kept.values()), Counter[str]())), len(kept))
-        await run_parts(self._engine, missing, self._keep)
+        await run_parts(self._engine, missing, self._keep, self._sleep)
 
     async def _kept(self) -> dict[int, dict[str, int]]:
         """Return the runs by state of each part that is there; one that cannot be read is put aside, as if it were missing."""
@@ -122,7 +122,7 @@ class Running:
         self._limits.check_kept(self._size)
 
     def _counted(self, counts: dict[str, int], parts: int) -> RunCounts:
-        return RunCounts(self.row.runs, self.row.parts, counts, parts, self._clock, self._engine.workers)
+        return RunCounts(self.row.runs, self.row.parts, counts, parts, self._clock, self._engine.threads)
 
     def _outcome(self, work: asyncio.Task[None]) -> tuple[str, str]:
         if work.cancelled():

@@ -46,7 +46,7 @@ READ = {
 class Here:
     """An engine in this process; `before` is called with the number of each part."""
 
-    name, workers = "here", 1
+    name, threads, at_a_time = "here", 1, 1
 
     def __init__(self, workers: int) -> None:
         self.computed: list[int] = []
