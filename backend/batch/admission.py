@@ -75,5 +75,5 @@ def same(found: Row, digest: str) -> Row:
     return found
 
 
-def _new_id(now: datetime) -> str:
+def _new_id(now: datetime) -> str:  # sweep.ID tells such a name from others
     return f"{now:%Y%m%d-%H%M%S}-{now.microsecond // 1000:03d}-{secrets.token_hex(3)}"

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import os
 from collections.abc import Callable, Coroutine
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
@@ -14,7 +15,7 @@ import sqlalchemy as sa
 from backend.batch.batches import Batches
 from backend.batch.catalogue import BatchCatalogue, Row
 from backend.batch.engine import OutOfReach, PartFailed, PartFiles, PartRefused, PartTask, WorkerLost
-from backend.batch.folder import BatchFolder
+from backend.batch.folder import BatchFolder, Division
 from backend.batch.limits import Limits
 from backend.batch.part_run import pause_s
 from backend.batch.progress import RunCounts
@@ -551,6 +552,74 @@ def test_a_full_disk_fails_the_batch_with_the_reason_and_keeps_what_is_there(
         assert bench.parts(batch) == [0, 1, 2]
 
     with_bench(tmp_path, work)
+
+
+def test_a_batch_that_cannot_be_kept_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    fsync = os.fsync
+
+    def until_full(descriptor: int) -> None:
+        if [*(tmp_path / "batches").glob("*/parts.json")]:
+            raise OSError(28, "No space left on device")
+        fsync(descriptor)
+
+    monkeypatch.setattr(os, "fsync", until_full)
+
+    async def work(bench: Bench) -> None:
+        with pytest.raises(Problem, match="cannot be written: No space left on device") as problem:
+            await bench.create()
+        assert problem.value.status == 507
+        assert [*(bench.folder / "batches").iterdir()] == []
+
+    with_bench(tmp_path, work)
+
+
+def test_a_batch_that_the_database_cannot_forget_keeps_its_results(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(_: BatchCatalogue, batch: str) -> None:
+        raise replace(LOCKED)
+
+    monkeypatch.setattr(BatchCatalogue, "forget", fail)
+
+    async def work(bench: Bench) -> None:
+        batch = await bench.create()
+        await bench.ended(batch)
+        with pytest.raises(Problem, match="locked"):
+            await bench.batches.delete(batch)
+        assert bench.parts(batch) == list(range(10))
+        assert await bench.state(batch) == "done"
+
+    with_bench(tmp_path, work)
+
+
+def test_a_start_finishes_what_a_kill_has_left_half_made_or_half_deleted(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    kept: list[str] = []
+
+    async def work(bench: Bench) -> None:
+        kept.extend([await bench.create(), await bench.create()])
+        await bench.ended(kept[1])
+
+    with_bench(tmp_path, work)
+    folder = tmp_path / "batches"
+    division = Division(PART_SIZE, "a version")
+    names = [f"20260101-000000-00{number}-abcdef" for number in range(4)]
+    for name in (names[0], f"{names[1]}.deleted", names[2], f"{names[3]}.deleted", "mine"):
+        BatchFolder(folder / name).create("{}", division)
+    for name in (f"{names[1]}.deleted", names[2]):
+        BatchFolder(folder / name).keep(0, PartFiles(b"rows", b"", {}))
+    (folder / f"{names[3]}.deleted" / "notes.txt").write_text("of somebody")
+    (folder / kept[0]).rename(folder / f"{kept[0]}.deleted")
+
+    async def after(bench: Bench) -> None:
+        await until(lambda: not (folder / f"{names[1]}.deleted").exists() and (folder / kept[0]).exists())
+        assert bench.parts(kept[0]) == list(range(10))
+
+    with_bench(tmp_path, after)
+    left = sorted(path.name for path in folder.iterdir())
+    assert left == sorted([*kept, names[2], f"{names[3]}.deleted", "mine"])
+    assert f"{names[2]} holds results that no batch of the database names" in caplog.text
 
 
 def puts(monkeypatch: pytest.MonkeyPatch, refuse: Callable[[Row], Exception | None]) -> None:
