@@ -7,6 +7,7 @@ from typing import Any
 
 from backend.batch.catalogue import Row
 from backend.batch.engine import Engine, OutOfReach
+from backend.batch.estimate import estimate_of, why_refused
 from backend.batch.limits import Limits
 from backend.batch.times import Times, text_of
 from backend.compute.pool import JobFailedError, JobRefusedError, Jobs
@@ -26,15 +27,14 @@ class Admission:
     async def estimate(self, batch: Batch) -> Document:
         """Return what a batch would take. Raises Problem if it makes no sense or is too large."""
         self._limits.check_runs(batch)
-        return await self._planned(batch)
+        return estimate_of(await self._planned(batch))
 
     async def row(self, batch: Batch, digest: str, key: str | None) -> Row:
         """Return a batch that may wait for its turn. Raises Problem if it may not."""
         self._limits.check_runs(batch)
         plan = await self._planned(batch)
-        if plan["all_refused"]:
-            reason = plan["refused"][0]
-            raise refused(f"No run of this batch can start. {reason}.", FieldError("vary", None, reason))
+        if why := why_refused(plan):
+            raise _refused(why)
         self._limits.check_bytes(plan["bytes"])
         now = self._times.now()
         facts = {
@@ -52,11 +52,14 @@ class Admission:
                 "plan_batch", batch.model_dump_json(), self._engine.threads, time_limit_s=PLAN_LIMIT_S
             )
         except JobRefusedError as refusal:
-            sentence = str(refusal)
-            raise refused(f"{sentence[:1].upper()}{sentence[1:]}.", FieldError("vary", None, sentence)) from refusal
+            raise _refused(str(refusal)) from refusal
         except (JobFailedError, OutOfReach) as failure:
             raise Problem(503, "Not planned", f"The batch could not be planned: {failure}.") from failure
         return plan
+
+
+def _refused(sentence: str) -> Problem:
+    return refused(f"{sentence[:1].upper()}{sentence[1:]}.", FieldError("vary", None, sentence))
 
 
 def digest_of(document: str) -> str:

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 ENDED_BY_USER = 130
 """Exit status of a program that Ctrl+C has ended."""
 FORMS = (".parquet", ".csv", ".arrow")
-TOLD = ("runs", "samples", "in_lanes", "seconds", "bytes", "paths", "columns", "first", "refused")
-"""What an estimate tells, as REST does."""
 
 
 def batch(
@@ -65,6 +63,7 @@ def batch(
 
 async def _run(document: str, output: Path, workers: int, address: str | None, only_estimate: bool) -> None:
     from backend.batch.beside_output import BesideOutput
+    from backend.batch.estimate import estimate_of, why_refused
     from backend.batch.jobs import plan_batch
 
     engine = _engine(workers, address)
@@ -74,10 +73,10 @@ async def _run(document: str, output: Path, workers: int, address: str | None, o
             workers = engine.threads
         plan = plan_batch(document, workers)
         if only_estimate:
-            typer.echo(json.dumps({name: plan[name] for name in TOLD}, indent=2, ensure_ascii=False))
+            typer.echo(json.dumps(estimate_of(plan), indent=2, ensure_ascii=False))
             return
-        if plan["all_refused"]:
-            refuse(f"no run of this batch can start; {plan['refused'][0]}")
+        if why := why_refused(plan):
+            refuse(why)
         await _compute(engine, document, plan, BesideOutput(output))
     finally:
         await engine.end()

@@ -32,20 +32,23 @@ def plan_batch(document: str, workers: int) -> dict[str, Any]:
             continue
         samples.append(numbers.count)
         in_lanes.append(numbers.variant is not None)
-    seconds = _mean([seconds_of(each, lanes, keep) for each, lanes in zip(samples, in_lanes, strict=True)])
+    run_s = _mean([seconds_of(each, lanes, keep) for each, lanes in zip(samples, in_lanes, strict=True)])
     size = _mean([bytes_of(len(columns), each, keep) for each in samples])
+    if not samples:  # a run that is refused takes time and a row, too
+        run_s, size = seconds_of(0, True, keep), bytes_of(len(columns), 0, keep)
     return {
         "runs": plan.count,
         "samples": round(plan.count * _mean(samples)),
         "in_lanes": _mean(in_lanes),
-        "seconds": plan.count * seconds / workers,
+        "seconds": plan.count * run_s / workers,
         "bytes": round(plan.count * size),
         "paths": plan.paths,
         "columns": columns,
         "first": [plan.values(number) for number in range(min(FIRST, plan.count))],
         "refused": refused,
-        "all_refused": not samples,
-        "part_size": part_size(plan.count, seconds, size, workers) if samples else 0,
+        "warning": "" if samples else f"none of the {len(refused)} runs looked at can start",
+        "all_refused": not samples and len(refused) == plan.count,
+        "part_size": part_size(plan.count, run_s, size, workers),
     }
 
 

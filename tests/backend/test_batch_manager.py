@@ -83,7 +83,7 @@ class FakeJobs:
         self.threads = arguments[1]
         return {
             "runs": RUNS, "part_size": PART_SIZE, "paths": ["seed"], "columns": ["run"], "bytes": 400, "seconds": 1.0,
-            "refused": [], "all_refused": False,
+            "refused": [], "all_refused": False, "warning": "", "samples": 0, "in_lanes": 1.0, "first": [],
         }  # fmt: skip
 
 
