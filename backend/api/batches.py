@@ -1,20 +1,16 @@
 """Batches over REST: estimated, started, watched, ended, resumed; their results by pages or whole. Workers plan and read."""
 
-import asyncio
-import json
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Header, Query, Request, Response
 from fastapi.responses import FileResponse
-from pydantic import ValidationError
 
 from backend.api.reading import channels_in, named_file, read
-from backend.api.resources import body_named, body_of
+from backend.api.resources import body_named, content_of
 from backend.batch.batches import Batches
 from backend.batch.catalogue import Row
 from backend.compute.pool import Pool
-from backend.problem import Problem, from_validation
-from vssea_core.batch.document import Batch
+from backend.problem import Problem
 
 LARGEST_DOCUMENT = 4_000_000
 EXPORT_LIMIT_S = 900.0
@@ -31,7 +27,7 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
     @router.post("/estimate", openapi_extra=body_named("Batch"))
     async def estimate(request: Request) -> Document:
         """Say how many runs, seconds and bytes a batch would take, and which of some runs would be refused."""
-        return await batches.estimate(await batch_of(request))
+        return await batches.estimate(await content_of(request, LARGEST_DOCUMENT))
 
     @router.post("", status_code=201, openapi_extra=body_named("Batch"))
     async def create(
@@ -40,7 +36,7 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
         key: Annotated[str | None, Header(alias="Idempotency-Key", max_length=200)] = None,
     ) -> Document:
         """Start a batch, or return the one that was started with the same Idempotency-Key."""
-        row, is_new = await batches.create(await batch_of(request), key)
+        row, is_new = await batches.create(await content_of(request, LARGEST_DOCUMENT), key)
         response.status_code = 201 if is_new else 200
         response.headers["Location"] = f"/api/batches/{row.id}"
         return await batches.document(row.id)
@@ -149,12 +145,3 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
         return await read(batches.plans.run("scenario_of", str(files.document_path), number), "batch")
 
     return router
-
-
-async def batch_of(request: Request) -> Batch:
-    """Return the body of a request as a batch. Raises Problem."""
-    body = await body_of(request, LARGEST_DOCUMENT)
-    try:
-        return await asyncio.to_thread(lambda: Batch.model_validate_json(json.dumps(body)))
-    except ValidationError as error:
-        raise from_validation(error, Batch, consequence="No batch was started.") from error

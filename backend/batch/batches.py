@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from backend.batch.admission import Admission, digest_of, same
+from backend.batch.admission import Admission, same
 from backend.batch.catalogue import ACTIVE, BatchCatalogue, Row
 from backend.batch.engine import Engine
 from backend.batch.folder import DELETED, BatchFolder, Division
@@ -21,7 +21,6 @@ from backend.batch.version import model_version
 from backend.compute.pool import Jobs
 from backend.problem import Problem
 from backend.store.troubles import Clash
-from vssea_core.batch.document import Batch
 
 logger = logging.getLogger(__name__)
 Document = dict[str, Any]
@@ -87,23 +86,22 @@ class Batches:
 
     # ---- what can be done
 
-    async def estimate(self, batch: Batch) -> Document:
-        """Return what a batch would take. Raises Problem if it makes no sense or is too large."""
-        return await self._admission.estimate(batch)
+    async def estimate(self, body: bytes) -> Document:
+        """Return what the batch in a request's body would take. Raises Problem if it makes no sense or is too large."""
+        return await self._admission.estimate(await self._admission.read(body))
 
-    async def create(self, batch: Batch, key: str | None = None) -> tuple[Row, bool]:
+    async def create(self, body: bytes, key: str | None = None) -> tuple[Row, bool]:
         """Return a new batch that waits for its turn, or the one that was asked for with the same key; and whether it is new.
 
-        Raises Problem.
+        `body` is a document as JSON; workers see to it, since a large one would hold up the loop. Raises Problem.
         """
-        document = batch.model_dump_json()
-        digest = digest_of(document)
+        asked = await self._admission.read(body)
         if key is not None and (found := await asyncio.to_thread(self._catalogue.find_key, key)):
-            return same(found, digest), False
-        row = await self._admission.row(batch, digest, key)
+            return same(found, asked.digest), False
+        row = await self._admission.row(asked, key)
         self._limits.check_waiting(self._queue.length)
         async with self._turn:
-            return await self._kept(row, document)
+            return await self._kept(row, asked.document)
 
     async def _kept(self, row: Row, document: str) -> tuple[Row, bool]:
         folder = self.folder_of(row)

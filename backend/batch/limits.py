@@ -1,11 +1,9 @@
 """How much a batch may be: runs, bytes, and how many may wait."""
 
-import math
 from dataclasses import dataclass
 
 from backend.problem import FieldError, Problem, refused
 from backend.settings import Settings
-from vssea_core.batch.document import Batch, count_of
 
 
 class TooLarge(RuntimeError):
@@ -25,9 +23,8 @@ class Limits:
         """Return the limits that the settings name."""
         return cls(settings.batch_most_runs, 1e9 * settings.batch_most_gb, settings.batch_waiting)
 
-    def check_runs(self, batch: Batch) -> None:
+    def check_runs(self, runs: int) -> None:
         """Raise Problem if a batch has too many runs."""
-        runs = math.prod(count_of(variation) for variation in batch.vary)
         if runs > self.runs:
             expected = f"expected at most {self.runs:,} runs"
             raise refused(

@@ -16,6 +16,7 @@ from backend.batch.batches import Batches
 from backend.batch.catalogue import BatchCatalogue, Row
 from backend.batch.engine import OutOfReach, PartFailed, PartFiles, PartRefused, PartTask, WorkerLost
 from backend.batch.folder import BatchFolder, Division
+from backend.batch.jobs import read_batch
 from backend.batch.limits import Limits
 from backend.batch.part_run import pause_s
 from backend.batch.progress import RunCounts
@@ -76,6 +77,8 @@ class FakeJobs:
         self.planned = self.threads = 0
 
     async def run(self, job: str, *arguments: Any, time_limit_s: float = 60.0) -> Any:
+        if job == "read_batch":
+            return read_batch(*arguments)
         if job == "counts_by_part":
             folder = BatchFolder(Path(arguments[0]))
             return {number: _counts(folder.rows_of(number).read_bytes()) for number in folder.parts()}
@@ -138,8 +141,9 @@ async def until(look: Callable[[], object]) -> None:
             await asyncio.sleep(0)
 
 
-def document(seed: int = 0) -> Batch:
-    return Batch(vary=(Grid(kind="grid", path="seed", low=0.0, high=99.0, count=RUNS),), seed=seed)
+def document(seed: int = 0) -> bytes:
+    batch = Batch(vary=(Grid(kind="grid", path="seed", low=0.0, high=99.0, count=RUNS),), seed=seed)
+    return batch.model_dump_json().encode()
 
 
 def with_bench(
