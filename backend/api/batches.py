@@ -58,7 +58,8 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
     @router.get("/{batch}/document")
     async def document(batch: str) -> FileResponse:
         """Return the document that a batch was started with."""
-        return FileResponse(batches.folder_of(await batches.row(batch)).document_path, media_type="application/json")
+        path = await batches.document_path(await batches.row(batch))
+        return FileResponse(path, media_type="application/json")
 
     @router.post("/{batch}/cancel")
     async def cancel(batch: str) -> Document:
@@ -102,9 +103,9 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
     async def run(batch: str, number: int) -> Document:
         """Return values, state and figures of one run; `waiting` until it is computed."""
         row = await found(batch, number)
-        files = batches.folder_of(row)
-        values = await read(batches.plans.run("values_of", str(files.document_path), number), "batch")
-        kept = await read(batches.results.run("row", str(files.path), number, number // row.part_size), "batch")
+        path = await batches.document_path(row)
+        values = await read(batches.plans.run("values_of", str(path), number), "batch")
+        kept = await read(batches.results.run("row", str(path.parent), number, number // row.part_size), "batch")
         known = {} if kept is None else {name: value for name, value in kept.items() if name not in values}
         return {"run": number, "values": values, "state": "waiting", **known}
 
@@ -141,7 +142,7 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
         return row
 
     async def scenario_of(batch: str, number: int) -> Any:
-        files = batches.folder_of(await found(batch, number))
-        return await read(batches.plans.run("scenario_of", str(files.document_path), number), "batch")
+        path = await batches.document_path(await found(batch, number))
+        return await read(batches.plans.run("scenario_of", str(path), number), "batch")
 
     return router

@@ -73,6 +73,14 @@ class Batches:
         """Return where a batch's files are."""
         return BatchFolder(self.folder / row.id)
 
+    async def document_path(self, row: Row) -> Path:
+        """Return the file of the document that a batch was started with. Raises Problem if it is gone."""
+        path = self.folder_of(row).document_path
+        if not await asyncio.to_thread(path.exists):
+            what = f"The document of the batch {row.name!r} is gone: there is no {path}."
+            raise Problem(404, "No document", f"{what} Put the file back, or delete the batch.")
+        return path
+
     async def document(self, batch: str) -> Document:
         """Return a batch as REST gives it. Raises Problem if there is none."""
         running = self._queue.running  # what it says later on is newer than the row
