@@ -178,6 +178,8 @@ class Batches:
                 await asyncio.to_thread(lambda: sweep(self.folder, self._catalogue.ids()))
             except (Problem, OSError) as problem:
                 logger.info("left folders of batches are looked for at the next start: %s", problem)
+            except Exception:
+                logger.exception("left folders of batches are looked for at the next start")
 
 
 async def _removed(folder: BatchFolder) -> None:

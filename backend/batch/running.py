@@ -20,6 +20,7 @@ from backend.compute.pool import JobFailedError, JobRefusedError, Jobs
 
 logger = logging.getLogger(__name__)
 READ_LIMIT_S = 900.0
+UNEXPECTED = "an internal error; the server's log has the details"
 ANEW = "computed from its start: the parts that were kept are of another version of the model"
 
 
@@ -136,5 +137,5 @@ class Running:
                 reason = f"{self._folder.path} cannot be read or written: {failure.strerror or failure}"
             case failure:
                 logger.error("batch %s failed", self.row.id, exc_info=failure)
-                reason = "an internal error; the server's log has the details"
+                reason = UNEXPECTED
         return "failed", reason
