@@ -37,7 +37,7 @@ from vssea_core.actuator.dynamics import (
 from vssea_core.actuator.sensors import Encoders, Noise, measure
 from vssea_core.actuator.spring import leaf
 from vssea_core.batch import layout as at
-from vssea_core.batch.lane_access import LANES, lane, put_lane
+from vssea_core.batch.lane_access import LANES, align_stack, lane, put_lane
 from vssea_core.compiled import called, entry, inlined, written_out
 from vssea_core.control.law import (
     BASELINE,
@@ -259,6 +259,7 @@ def lanes_kernel(variant: Variant) -> Callable[..., None]:
         settle(w, j, plant_of(w, j, friction), y, tau_e + gap)
 
     def advance(w, tunings, courses, link_terms, motor_terms, which, first, count, period, delayed, scheduled):
+        align_stack()
         together = True
         for j in range(LANES):
             together = together and which[j] == which[0]

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from vssea_core.batch import layout as at
 from vssea_core.batch.course_book import CourseBook
-from vssea_core.batch.lane_access import LANES
+from vssea_core.batch.lane_access import LANES, aligned_lanes
 from vssea_core.batch.lanes import Variant, lanes_kernel
 from vssea_core.batch.numbers import RunNumbers
 from vssea_core.batch.sums import first_sums, metrics_of_sums
@@ -29,7 +29,7 @@ def run_side_by_side(
     """
     first = runs[0]
     period, count = first.scenario.timing.sample_time_s, first.count
-    lanes = np.zeros((at.LANE_SIZE, LANES))
+    lanes = aligned_lanes(at.LANE_SIZE)
     gone = np.zeros(len(runs), dtype=bool)
     for j, each in enumerate(runs):
         gone[j] = not _start(each, lanes[:, j])
