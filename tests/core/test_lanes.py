@@ -145,6 +145,7 @@ def test_the_loop_over_lanes_is_made_of_vectors() -> None:
     anew = numba.njit(error_model="numpy")(kernel.py_func)  # what comes from the cache can no longer be read
     anew.compile(kernel.signatures[0])
     code = anew.inspect_llvm(anew.signatures[0])
-    in_lanes, alone = (len(re.findall(rf"fmul {kind}", code)) for kind in (r"<\d+ x double>", "double"))
-    assert in_lanes > 300
+    kinds = r"<\d+ x double>", "double"
+    in_lanes, alone = (len(re.findall(rf"fmul {kind}|call {kind} @llvm.fma", code)) for kind in kinds)
+    assert in_lanes > 400
     assert alone < 0.2 * in_lanes
