@@ -65,11 +65,11 @@ class RunNumbers:
         return bool(self.prepared[TABLE_AT] > 1.0)
 
     @cached_property
-    def course(self) -> bytes:
-        """What its course depends on besides the period: runs with the same share one."""
+    def course(self) -> tuple[bytes, bytes, bytes]:
+        """What reference, stiffness command and loads depend on besides the period: runs with the same share them."""
         inputs = self.inputs
-        parts = (self.reference, self.slew[:6], inputs.link_terms, inputs.motor_terms)
-        return b"|".join(part.tobytes() for part in parts)
+        loads = inputs.link_terms.tobytes() + b"|" + inputs.motor_terms.tobytes()
+        return self.reference.tobytes(), self.slew[:6].tobytes(), loads
 
 
 class NumbersOf:

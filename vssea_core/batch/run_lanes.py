@@ -39,9 +39,14 @@ def run_side_by_side(
     kernel, block = lanes_kernel(variant), lanes.ravel()
     for begin in range(1, count, BLOCK):
         samples = min(BLOCK, count - begin)
+        pages = (
+            courses.targets.pages(begin, samples, period), courses.targets.which,
+            courses.commands.pages(begin, samples, period), courses.commands.which,
+            courses.loads.pages(begin, samples, period), courses.loads.which,
+        )  # fmt: skip
         kernel(
-            block, tunings, courses.pages(begin, samples), courses.link_terms, courses.motor_terms,
-            courses.which, begin, samples, period, first.delayed, first.is_scheduled,
+            block, tunings, *pages, courses.link_terms, courses.motor_terms,
+            begin, samples, period, first.delayed, first.is_scheduled,
         )  # fmt: skip
         if lanes[at.GONE].all():
             break
