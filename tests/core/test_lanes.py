@@ -120,6 +120,22 @@ def test_order_and_company_change_nothing() -> None:
         assert_equal(each, found[place])
 
 
+@pytest.mark.parametrize("base", [NOMINAL, REALISTIC], ids=["nominal", "realistic"])
+def test_runs_share_what_comes_from_outside_only_where_it_is_the_same(base: Scenario) -> None:
+    runs = Runs(base)
+    mixed = [
+        runs.scenario(SHORT | LOADED_EARLY | {path: value})
+        for number in range(7)
+        for path, value in (
+            ("reference.amplitude", 0.1 + 0.05 * number),
+            ("stiffness_reference.stiffness", 150.0 + 40.0 * number),
+            ("disturbances.link.0.torque", 1.0 + 0.5 * number),
+        )
+    ]
+    for scenario, found in zip(mixed, outcomes([*mixed]), strict=True):
+        assert_equal(found, run_alone(scenario))
+
+
 def test_a_refused_run_is_an_outcome_with_its_reason() -> None:
     scenarios = [NOMINAL.model_copy(update={"duration_s": 0.5})] * 3
     too_heavy = Runs(NOMINAL).scenario(
