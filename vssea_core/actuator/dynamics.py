@@ -131,7 +131,7 @@ def dormand_prince_step(plant, met, lag, y, gap, tau_e, tau_ms, loads_l, loads_e
     """Return y after one Dormand-Prince step of order 5 and length h [s], with the torques held.
 
     `gap` is how far the motor's torque still is from `tau_e` [N m] at its start; `loads_l`, `loads_e`, `loads_ms` are the
-    disturbance torques [N m] of link, motor and stiffness motor at its six instants; `met` as in `motion`.
+    disturbance torques [N m] of link, motor and stiffness motor at its six instants; `met` as in `accelerations`.
     """
     x, v, hh = (y[0], y[1], y[2]), (y[3], y[4], y[5]), h * h
     # Minus zero: the compiler may then leave out the sum, and sees that this spring is the one it has computed already.
