@@ -21,9 +21,10 @@ from backend.batch.listed import listed
 from backend.batch.news import News, Tell
 from backend.batch.running import Running
 from backend.compute.pool import JobFailedError, JobRefusedError
-from backend.problem import FieldError, Problem, refused
+from backend.problem import Problem, refused
 from backend.store.troubles import Clash
 from vssea_core.batch.document import Batch
+from vssea_core.field_errors import FieldError
 
 logger = logging.getLogger(__name__)
 RETRY_S = 10.0

@@ -7,6 +7,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError, create_model
 from pydantic_core import from_json, to_json
 
 from vssea_core.changes import set_values
+from vssea_core.field_errors import field_errors, sentence_of
 from vssea_core.scenario import Scenario, check_fits
 
 Values = dict[str, Any]
@@ -50,6 +51,4 @@ class Runs:
         try:
             return getattr(_PART_MODELS[name].model_validate_json(to_json(document)), name)
         except ValidationError as error:
-            first = error.errors(include_url=False)[0]
-            place = ".".join(map(str, first["loc"]))
-            raise ValueError(f"{place} {first['msg'].removeprefix('Value error, ')}") from error
+            raise ValueError(sentence_of(field_errors(error, _PART_MODELS[name]))) from error
