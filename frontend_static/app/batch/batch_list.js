@@ -1,6 +1,7 @@
 import { arrange, element, setText } from "../element.js";
 import { when } from "../presets/when.js";
-import { STATES, isActive, rateWords, runsWords, spanWords } from "./words.js";
+import { showProgress } from "./progress.js";
+import { STATES, isActive, isPreparing, rateWords, runsWords, spanWords } from "./words.js";
 
 /** The list of batches: how far each is, at what rate, how long still; cancel, delete, and open one. */
 export class BatchList {
@@ -14,7 +15,7 @@ export class BatchList {
     this.list = element("ol", { class: "batch-list" });
     this.problem = element("p", { class: "form-problem", role: "status", hidden: true });
     this.empty = element("p", { class: "hint" }, "Loading…");
-    this.root = element("section", { class: "side-panel", "aria-label": "Batches" }, element("h2", {}, "Batches"), this.problem, this.list, this.empty);
+    this.root = element("section", { class: "side-panel batch-list-panel", "aria-label": "Batches" }, element("h2", {}, "Batches"), this.problem, this.list, this.empty);
     batches.addEventListener("list", () => this.#show());
     batches.addEventListener("problem", () => {
       setText(this.problem, batches.problem);
@@ -37,7 +38,7 @@ export class BatchList {
       this.#lines.get(batch.id).show(batch);
     }
     arrange(this.list, list.map(({ id }) => this.#lines.get(id).root));
-    setText(this.empty, list.length ? `The newest ${list.length} of ${total}.` : "None yet. Choose fields above and start: its results are kept here.");
+    setText(this.empty, list.length ? `The newest ${list.length} of ${total}.` : "None yet. Choose fields above and start one: it is kept here with its results.");
     this.empty.hidden = list.length > 0 && total <= list.length;
     this.mark(this.marked);
   }
@@ -61,6 +62,7 @@ class BatchLine {
   }
 
   mark(isShown) {
+    this.root.classList.toggle("is-shown", isShown);
     if (isShown) this.title.setAttribute("aria-current", "true");
     else this.title.removeAttribute("aria-current");
   }
@@ -72,15 +74,18 @@ class BatchLine {
     this.root.dataset.id = batch.id;
     setText(this.title, batch.name);
     this.title.title = `${batch.name}, ${when(batch.created_at)}`;
-    const share = batch.progress?.share ?? 0;
-    setText(this.state, batch.state === "running" ? `${Math.floor(100 * share)} %` : (STATES[batch.state] ?? batch.state));
+    setText(this.state, stateWord(batch));
     for (const button of [this.cancel, this.delete]) button.setAttribute("aria-label", `${button.textContent} ${batch.name}`);
     this.cancel.hidden = !active;
     this.delete.hidden = active;
-    this.progress.hidden = !active;
-    this.progress.value = share;
+    showProgress(this.progress, batch);
     setText(this.words, lineWords(batch));
   }
+}
+
+function stateWord(batch) {
+  if (isPreparing(batch)) return "preparing";
+  return batch.state === "running" ? `${Math.floor(100 * (batch.progress?.share ?? 0))} %` : (STATES[batch.state] ?? batch.state);
 }
 
 /** @returns {string} the second line: rate and time left while it runs, else when it was made and what became of it */

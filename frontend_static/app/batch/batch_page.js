@@ -16,7 +16,7 @@ const REST = 4; // times as long as the results took to fetch, before they are f
 const NOTHING = "No results yet. Choose fields on the left and start a batch, or open one of the list.";
 const WAITS = {
   queued: "No results yet: it waits for the batches before it.",
-  running: "No results yet: the first part is under way. The first batch after an installation compiles its code before, which takes some minutes.",
+  running: "No results yet: the first part is under way. Code that was never used here is compiled before: for up to a minute, after an installation for some.",
 };
 
 /** The results of one batch: its head, what is drawn of them, the chosen run. */
@@ -29,6 +29,7 @@ export class BatchPage {
   constructor({ session, theme }) {
     this.batch = null;
     this.schema = null;
+    this.isLost = false;
     this.table = new ResultTable();
     this.head = new BatchHead();
     this.choice = new PictureChoice(() => this.#need());
@@ -45,8 +46,11 @@ export class BatchPage {
 
   /** Show a batch, or none. @param {string|null} id @param {import("../document/parameter_schema.js").ParameterSchema} schema */
   async open(id, schema) {
-    if (id === this.table.id) return;
+    if (id === this.table.id && !this.isLost) return;
+    this.schema = schema;
+    this.isLost = false;
     clearTimeout(this.#timer);
+    this.#timer = null;
     this.#closeRun();
     this.table.open(id);
     this.batch = null;
@@ -60,19 +64,23 @@ export class BatchPage {
     try {
       const [batch, document] = await Promise.all([batchRoutes.batch(id), batchRoutes.document(id)]);
       if (id !== this.table.id) return;
-      this.columns = new Columns(batch, scenarioFields(document.scenario, schema));
+      this.columns = new Columns(batch, scenarioFields(document.scenario, schema), document);
       this.choice.offer(this.columns);
       this.results.hidden = false;
       this.take(batch);
       if (!this.#seen) this.#need();
     } catch (refusal) {
-      if (id === this.table.id) this.#tell(refusal.message);
+      if (id !== this.table.id) return;
+      this.isLost = true;
+      this.#tell(refusal.message);
     }
   }
 
   /** Newer facts of the batch that is shown. */
   take(batch) {
-    if (batch.id !== this.table.id || !this.columns) return;
+    if (batch.id !== this.table.id) return;
+    if (this.isLost) return void this.open(batch.id, this.schema);
+    if (!this.columns) return;
     this.batch = batch;
     this.head.show(batch);
     const seen = `${batch.state} ${batch.progress?.done}`;
@@ -128,7 +136,12 @@ export class BatchPage {
     const sentence = this.#nothing(isList);
     this.#tell(sentence);
     if (isList) this.unwell.show(table, this.columns);
-    else this.plot.show(sentence ? null : this.choice.picture(table));
+    else this.plot.show(sentence && !this.#hasAxes() ? null : this.choice.picture(table));
+  }
+
+  /** A map has its axes before it has a result. */
+  #hasAxes() {
+    return isActive(this.batch) && this.choice.kind === "map" && this.columns.paths.length > 1;
   }
 
   /** @returns {string} why nothing can be drawn, "" if something can */
