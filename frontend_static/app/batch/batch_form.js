@@ -21,6 +21,7 @@ export class BatchForm {
     this.schema = null;
     this.search = new FieldSearch((field) => this.vary(field.path));
     this.list = element("ol", { class: "variations", "aria-label": "Varied fields" });
+    this.intro = element("p", { class: "hint" }, "Many runs of the present scenario, with these fields varied.");
     this.empty = element("p", { class: "hint" }, "Choose a field: it gets a range, which you can change. Two fields on grids make a map.");
     this.options = new FormOptions();
     this.estimate = new Estimate();
@@ -29,7 +30,7 @@ export class BatchForm {
     this.body = element(
       "div",
       { id: "batch-new", class: "batch-form-body" },
-      element("p", { class: "hint" }, "Many runs of the present scenario, with these fields varied."),
+      this.intro,
       this.search.root,
       element("div", { class: "batch-form-fields" }, this.empty, this.list, ...this.options.parts),
       element("div", { class: "batch-form-end" }, this.estimate.root, this.problem, element("div", { class: "form-row" }, this.button)),
@@ -94,7 +95,7 @@ export class BatchForm {
 
   #arrange() {
     this.search.offer(this.#fields, new Set(this.#rows.map(({ field }) => field.path)));
-    this.empty.hidden = this.#rows.length > 0;
+    this.intro.hidden = this.empty.hidden = this.#rows.length > 0;
     this.options.arrange(this.#rows);
     const count = this.#rows.length;
     this.fold.say(count ? `${count} field${count === 1 ? "" : "s"}` : "");

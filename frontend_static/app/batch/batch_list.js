@@ -6,6 +6,7 @@ import { STATES, isActive, isPreparing, rateWords, runsWords, spanWords } from "
 /** The list of batches: how far each is, at what rate, how long still; cancel, delete, and open one. */
 export class BatchList {
   #lines = new Map();
+  #isListed = false;
 
   /** @param {import("./batches.js").Batches} batches @param {object} ask AskDialog @param {(id: string) => void} open */
   constructor(batches, ask, open) {
@@ -25,8 +26,18 @@ export class BatchList {
 
   /** Mark the one whose results are shown. */
   mark(id) {
+    const isOther = id !== this.marked;
     this.marked = id;
     for (const [own, line] of this.#lines) line.mark(own === id);
+    if (isOther) this.#reveal();
+  }
+
+  /** Bring the marked one in sight, in the list alone: the page stays where it is. */
+  #reveal() {
+    const line = this.#lines.get(this.marked)?.root;
+    if (!line) return;
+    const [box, own] = [this.root.getBoundingClientRect(), line.getBoundingClientRect()];
+    this.root.scrollTop += Math.min(0, own.top - box.top) + Math.max(0, own.bottom - box.bottom);
   }
 
   #show() {
@@ -40,12 +51,23 @@ export class BatchList {
     arrange(this.list, list.map(({ id }) => this.#lines.get(id).root));
     setText(this.empty, list.length ? `The newest ${list.length} of ${total}.` : "None yet. Choose fields above and start one: it is kept here with its results.");
     this.empty.hidden = list.length > 0 && total <= list.length;
-    this.mark(this.marked);
+    for (const [own, line] of this.#lines) line.mark(own === this.marked);
+    if (!this.#isListed && list.length) this.#reveal();
+    this.#isListed = list.length > 0;
   }
 
   async remove(batch) {
     const text = `${runsWords(batch.runs)} and their results. They cannot be brought back.`;
-    if (await this.ask.sure(`Delete ${batch.name}?`, text, "Delete")) this.batches.remove(batch.id);
+    if (!(await this.ask.sure(`Delete ${batch.name}?`, text, "Delete"))) return;
+    const ids = this.batches.list.map(({ id }) => id);
+    const place = ids.indexOf(batch.id);
+    await this.batches.remove(batch.id);
+    if (document.activeElement === document.body) this.focus(ids[place + 1] ?? ids[place - 1]);
+  }
+
+  /** Give a batch the focus. */
+  focus(id) {
+    this.#lines.get(id)?.title.focus();
   }
 }
 

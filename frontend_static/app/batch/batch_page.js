@@ -16,7 +16,7 @@ const REST = 4; // times as long as the results took to fetch, before they are f
 const NOTHING = "No results yet. Choose fields on the left and start a batch, or open one of the list.";
 const WAITS = {
   queued: "No results yet: it waits for the batches before it.",
-  running: "No results yet: the first part is under way. Code that was never used here is compiled before: for up to a minute, after an installation for some.",
+  running: "No results yet: the first part is under way. Code that is used for the first time is compiled before it, which can take a minute, and some minutes after an installation.",
 };
 
 /** The results of one batch: its head, what is drawn of them, the chosen run. */
@@ -84,7 +84,7 @@ export class BatchPage {
     this.batch = batch;
     this.head.show(batch);
     const seen = `${batch.state} ${batch.progress?.done}`;
-    if (seen === this.#seen) return;
+    if (seen === this.#seen && !this.table.problem) return;
     this.#seen = seen;
     if (!isActive(batch)) return this.#reload();
     this.#timer ??= setTimeout(() => this.#reload(), Math.max(0, this.#nextAt - performance.now()));
@@ -132,11 +132,12 @@ export class BatchPage {
     this.plot.root.hidden = isList;
     this.plot.readout.hidden = isList;
     this.unwell.root.hidden = !isList;
+    if (table.problem && !table.rows) this.#tell("");
     if (!table.has(this.#names())) return;
     const sentence = this.#nothing(isList);
     this.#tell(sentence);
     if (isList) this.unwell.show(table, this.columns);
-    else this.plot.show(sentence && !this.#hasAxes() ? null : this.choice.picture(table));
+    else this.plot.show(sentence && !this.#hasAxes() ? null : this.choice.picture(table), !sentence);
   }
 
   /** A map has its axes before it has a result. */

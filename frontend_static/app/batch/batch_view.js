@@ -52,7 +52,9 @@ export class BatchView {
   /** Where there is little room, the form gives way to the list, and both to the results. */
   #turn(path) {
     this.path = path;
+    const hadFocus = path !== "" && this.form.fold.body.contains(document.activeElement);
     this.form.fold.open(path === "");
+    if (hadFocus) this.list.focus(path);
     if (path && STACKED.matches) this.page.root.scrollIntoView({ block: "start" });
   }
 

@@ -44,7 +44,7 @@ export class PictureChoice {
     this.kind = columns.paths.length > 1 ? "map" : columns.paths.length ? "scatter" : "histogram";
     fill(this.figure, columns, columns.figures, FIRST_FIGURE);
     const words = columns.paths.filter((path) => columns.describe(path).options);
-    this.group.replaceChildren(...words.map((path) => new Option(columns.describe(path).title, path)), new Option("one", ""));
+    this.group.replaceChildren(...words.map((path) => new Option(columns.describe(path).label, path)), new Option("one", ""));
     this.group.value = words[0] ?? "";
     this.#offerAxes();
     this.#arrange();
@@ -126,6 +126,6 @@ export class PictureChoice {
 /** Keep what was chosen where it is still offered, unless the choice is fresh. */
 function fill(select, columns, names, first, isFresh = false) {
   const kept = !isFresh && names.includes(select.value) ? select.value : first;
-  select.replaceChildren(...names.map((name) => new Option(columns.describe(name).title, name)));
+  select.replaceChildren(...names.map((name) => new Option(columns.describe(name).label, name)));
   select.value = names.includes(kept) ? kept : names[0];
 }

@@ -43,12 +43,13 @@ export class PlotCanvas {
     new ResizeObserver(() => this.draw()).observe(this.root);
   }
 
-  /** Show a picture; the run that was read in the one before is read in this one, too. @param {object|null} picture */
-  show(picture) {
+  /** Show a picture; the run that was read in the one before is read in this one, too. @param {object|null} picture
+   *  @param {boolean} [hasRuns] whether there is something to click */
+  show(picture, hasRuns = true) {
     const run = this.#spot === null ? null : this.picture.run(this.#spot);
     this.picture = picture;
     this.canvas.setAttribute("aria-label", picture ? `${picture.about} Arrow keys read it, Enter shows the run.` : "No results yet");
-    this.readout.classList.toggle("is-idle", picture !== null);
+    this.readout.classList.toggle("is-idle", picture !== null && hasRuns);
     this.#read(run === null || !picture ? null : picture.spotOf(run));
     if (this.#pointer) this.#point(this.#pointer);
   }

@@ -1,6 +1,6 @@
 import { endsOf } from "./scales.js";
 
-const LIKELY = 3; // standard deviations that an axis spans on either side
+const MOST_STD = 4; // standard deviations that an axis spans on either side
 
 /**
  * What each varied field takes in a batch, as its document says: known before any run is done.
@@ -30,8 +30,8 @@ function onGrid({ low, high, count, spacing }) {
   return Array.from({ length: count }, (_, place) => value(place));
 }
 
-function drawn({ kind, low, high, mean, std, within = LIKELY }, count, scaled) {
-  const reach = Math.min(within, LIKELY) * std;
+function drawn({ kind, low, high, mean, std, within = MOST_STD }, count, scaled) {
+  const reach = Math.min(within, MOST_STD) * std;
   const ends = (kind === "normal" ? [mean - reach, mean + reach] : [low, high]).map(scaled).sort((a, b) => a - b);
   return { values: null, low: ends[0], high: ends[1], isLogarithmic: kind === "log_uniform", bins: Math.max(2, Math.ceil(Math.sqrt(count))) };
 }
