@@ -7,6 +7,7 @@ import { STATES, isActive, isPreparing, rateWords, runsWords, spanWords } from "
 export class BatchList {
   #lines = new Map();
   #isListed = false;
+  #awaited = null; // the batch that gets the focus
 
   /** @param {import("./batches.js").Batches} batches @param {object} ask AskDialog @param {(id: string) => void} open */
   constructor(batches, ask, open) {
@@ -54,6 +55,7 @@ export class BatchList {
     for (const [own, line] of this.#lines) line.mark(own === this.marked);
     if (!this.#isListed && list.length) this.#reveal();
     this.#isListed = list.length > 0;
+    if (this.#awaited !== null) this.focus(this.#awaited);
   }
 
   async remove(batch) {
@@ -65,9 +67,11 @@ export class BatchList {
     if (document.activeElement === document.body) this.focus(ids[place + 1] ?? ids[place - 1]);
   }
 
-  /** Give a batch the focus. */
+  /** Give a batch the focus, as soon as it is listed. */
   focus(id) {
-    this.#lines.get(id)?.title.focus();
+    const line = this.#lines.get(id);
+    this.#awaited = line ? null : id;
+    line?.title.focus();
   }
 }
 

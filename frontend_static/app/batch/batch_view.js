@@ -36,7 +36,10 @@ export class BatchView {
 
   async #start(document, key) {
     const { id } = await this.batches.start(document, key);
-    if (this.views.shown === VIEW) this.views.go(VIEW, id);
+    if (this.views.shown !== VIEW) return;
+    const hasFocus = [document.body, ...this.form.body.querySelectorAll("*")].includes(document.activeElement);
+    this.views.go(VIEW, id);
+    if (hasFocus) this.list.focus(id); // the form that had it folds
   }
 
   #look() {
@@ -52,9 +55,7 @@ export class BatchView {
   /** Where there is little room, the form gives way to the list, and both to the results. */
   #turn(path) {
     this.path = path;
-    const hadFocus = path !== "" && this.form.fold.body.contains(document.activeElement);
     this.form.fold.open(path === "");
-    if (hadFocus) this.list.focus(path);
     if (path && STACKED.matches) this.page.root.scrollIntoView({ block: "start" });
   }
 
