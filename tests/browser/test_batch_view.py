@@ -1,7 +1,8 @@
 """The view Batch in a real browser against a real server: defined, watched, read, a run of it looked at and loaded."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import pytest
@@ -259,7 +260,8 @@ def test_a_batch_under_way_is_cancelled_and_deleted(running: Server, open_page: 
     expect(page.locator(".batch-title:focus")).to_have_count(1)
 
 
-def altered(server: Server, page: Page, batch: str, rows: int, **facts: Any) -> None:
+@contextmanager
+def altered(server: Server, page: Page, batch: str, rows: int, **facts: Any) -> Iterator[None]:
     """Let a page see a batch with other facts, and only the first rows of its results."""
     told = server.get(f"/api/batches/{batch}").json() | facts
     page.route(f"**/api/batches/{batch}", lambda route: route.fulfill(json=told))
@@ -270,6 +272,8 @@ def altered(server: Server, page: Page, batch: str, rows: int, **facts: Any) -> 
         route.fulfill(json=found | {"total": rows, "rows": found["rows"][:rows]})
 
     page.route(f"**/api/batches/{batch}/results?*", few)
+    yield
+    page.unroute_all(behavior="ignoreErrors")
 
 
 def test_a_batch_without_a_result_says_that_it_prepares_and_for_how_long(
@@ -277,15 +281,15 @@ def test_a_batch_without_a_result_says_that_it_prepares_and_for_how_long(
 ) -> None:
     page = open_page(running)
     nothing = {"done": 0, "runs": 30, "parts_done": 0, "parts": 1, "share": 0.0}
-    altered(running, page, mapped, 0, state="running", progress=nothing, rate=None, seconds=7.2, ended_at=None)
-    batch_view(page, mapped)
-    expect(page.locator(".batch-state")).to_have_text("preparing · 7 s")
-    expect(page.locator(".batch .task-state")).to_have_text("preparing")
-    for bar in (page.locator(".batch progress"), page.locator(".batch-head progress")):
-        expect(bar).to_be_visible()
-        assert bar.get_attribute("value") is None
-    expect(page.locator("#batch-main .result-overlay")).to_contain_text("the first part is under way")
-    expect(page.locator("#batch-main .result-overlay")).to_contain_text("compiled")
+    with altered(running, page, mapped, 0, state="running", progress=nothing, rate=None, seconds=7.2, ended_at=None):
+        batch_view(page, mapped)
+        expect(page.locator(".batch-state")).to_have_text("preparing · 7 s")
+        expect(page.locator(".batch .task-state")).to_have_text("preparing")
+        for bar in (page.locator(".batch progress"), page.locator(".batch-head progress")):
+            expect(bar).to_be_visible()
+            assert bar.get_attribute("value") is None
+        expect(page.locator("#batch-main .result-overlay")).to_contain_text("the first part is under way")
+        expect(page.locator("#batch-main .result-overlay")).to_contain_text("compiled")
 
 
 AXES = """() => {
@@ -313,11 +317,11 @@ def test_the_axes_of_a_map_stay_as_they_are_while_results_come_in(
     assert page.evaluate(IS_DRAWN_ABOVE)
     page.evaluate("location.hash = '#batch'")
     expect(page.locator(".batch-results")).to_be_hidden()
-    altered(running, page, mapped, 7)
-    page.locator(f".batch[data-id='{mapped}'] .batch-title").click()
-    wait_until(page, f"() => ({COLOURS})() > 3")
-    assert page.evaluate(AXES) == whole
-    assert not page.evaluate(IS_DRAWN_ABOVE), "more than the first runs are drawn"
+    with altered(running, page, mapped, 7):
+        page.locator(f".batch[data-id='{mapped}'] .batch-title").click()
+        wait_until(page, f"() => ({COLOURS})() > 3")
+        assert page.evaluate(AXES) == whole
+        assert not page.evaluate(IS_DRAWN_ABOVE), "more than the first runs are drawn"
 
 
 def test_the_page_knows_the_values_of_a_batch_before_it_runs(running: Server, open_page: OpenPage) -> None:
@@ -375,6 +379,12 @@ def test_the_list_and_start_stay_in_sight_however_long_the_form_is(
         page.set_viewport_size({"width": width, "height": height})
         expect(page.get_by_role("button", name="Start")).to_be_in_viewport(ratio=1.0)
         expect(page.locator(".batch-title").first).to_be_in_viewport(ratio=1.0)
+        assert page.evaluate(
+            """() => {
+                const edges = (words) => document.querySelector(words).getBoundingClientRect();
+                return edges('.batch-form .start').bottom <= edges('.batch-list-panel').top;
+            }"""
+        )
     page.locator(f".batch[data-id='{mapped}'] .batch-title").click()
     fold = page.get_by_role("button", name="New batch")
     expect(fold).to_have_attribute("aria-expanded", "false")
