@@ -1,7 +1,7 @@
 import { arrange, element, setText } from "../element.js";
 import { when } from "../presets/when.js";
 import { showProgress } from "./progress.js";
-import { STATES, isActive, isPreparing, rateWords, runsWords, spanWords } from "./words.js";
+import { STATES, countWords, isActive, isPreparing, rateWords, runsWords, spanWords } from "./words.js";
 
 /** The list of batches: how far each is, at what rate, how long still; cancel, delete, and open one. */
 export class BatchList {
@@ -121,5 +121,7 @@ export function lineWords(batch) {
     return [runsWords(batch.runs), rateWords(batch.rate), left].filter(Boolean).join(" · ");
   }
   if (batch.state === "queued") return `${runsWords(batch.runs)} · waits for the batches before it`;
-  return [runsWords(batch.runs), when(batch.created_at), batch.state === "done" ? spanWords(batch.seconds) : batch.reason].filter(Boolean).join(" · ");
+  const { done = 0 } = batch.progress ?? {};
+  const runs = batch.state === "done" ? runsWords(batch.runs) : `${countWords(done)} of ${runsWords(batch.runs)}`;
+  return [runs, when(batch.created_at), batch.state === "done" ? spanWords(batch.seconds) : batch.reason].filter(Boolean).join(" · ");
 }

@@ -14,8 +14,10 @@ import { countWords, isActive } from "./words.js";
 const RELOAD_MS = 1500;
 const REST = 4; // times as long as the results took to fetch, before they are fetched again
 const NOTHING = "No results yet. Choose fields on the left and start a batch, or open one of the list.";
-const WAITS = {
+const WITHOUT = {
   queued: "No results yet: it waits for the batches before it.",
+  cancelled: "It was cancelled before its first part was done: it has no results.",
+  failed: "It failed before its first part was done: it has no results.",
   running: "No results yet: the first part is under way. Code that is used for the first time is compiled before it, which can take a minute, and some minutes after an installation.",
 };
 
@@ -147,7 +149,7 @@ export class BatchPage {
 
   /** @returns {string} why nothing can be drawn, "" if something can */
   #nothing(isList) {
-    if (!this.table.rows) return WAITS[this.batch?.state] ?? "It has no results.";
+    if (!this.table.rows) return WITHOUT[this.batch?.state] ?? "It has no results.";
     if (this.choice.kind === "map" && this.columns.paths.length < 2) return "A map needs two varied fields. This batch varies one: see the scatter plot.";
     if (!isList && !this.table.column("state").some((state) => state !== "refused")) return "Every run was refused: see “Not done” for the reasons.";
     return "";

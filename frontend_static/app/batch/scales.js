@@ -12,14 +12,17 @@ export class NumberScale {
     [this.low, this.high] = high > low ? [low, high] : widened(low);
   }
 
-  /** Around all values, with some room. @param {number[]} values @param {boolean|null} isLogarithmic if they allow it; null: if they are wide apart */
-  static around(values, isLogarithmic) {
+  /**
+   * Around all values, with some room. @param {number[]} values @param {boolean|null} isLogarithmic if they allow it; null: if
+   * they are wide apart @param {boolean} hasZero whether zero is on it where it is near
+   */
+  static around(values, isLogarithmic, hasZero) {
     const [low, high] = endsOf(values);
     if (!Number.isFinite(low)) return new NumberScale(0, 1);
     const isLog = low > 0 && (isLogarithmic === null ? high > WIDE * low : isLogarithmic && high > 3 * low);
     if (isLog) return new NumberScale(low / (high / low) ** ROOM, high * (high / low) ** ROOM, true);
     const room = ROOM * (high - low);
-    return new NumberScale(low >= 0 && low < 0.3 * high ? 0 : low - room, high + room);
+    return new NumberScale(hasZero && low >= 0 && low < 0.3 * high ? 0 : low - room, high + room);
   }
 
   at(value) {

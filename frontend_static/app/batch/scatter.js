@@ -94,5 +94,5 @@ function axisScale(values, described) {
   const { varied, isLogarithmic } = described;
   const there = values.filter((value) => value !== null);
   if ([...there, ...(varied?.values ?? [])].some((value) => typeof value !== "number")) return cellScale(there, described);
-  return NumberScale.around([...there, varied?.low, varied?.high].filter(Number.isFinite), isLogarithmic);
+  return NumberScale.around([...there, varied?.low, varied?.high].filter(Number.isFinite), isLogarithmic, !varied);
 }
