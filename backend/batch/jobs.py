@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from backend.batch.sizes import bytes_of, part_size, seconds_of
+from backend.batch.sizes import bytes_of, held_of, part_size, seconds_of
 from vssea_core.batch.document import Batch
 from vssea_core.batch.numbers import NumbersOf
 from vssea_core.batch.part import columns_of
@@ -16,7 +16,7 @@ from vssea_core.scenario import Scenario
 LONG: frozenset[str] = frozenset()
 PROBED = 64
 FIRST = 3
-KEPT_PLANS = 4
+KEPT_PLANS = 1
 
 
 def plan_batch(document: str, workers: int) -> dict[str, Any]:
@@ -34,6 +34,7 @@ def plan_batch(document: str, workers: int) -> dict[str, Any]:
         in_lanes.append(numbers.variant is not None)
     seconds = _mean([seconds_of(each, lanes, keep) for each, lanes in zip(samples, in_lanes, strict=True)])
     size = _mean([bytes_of(len(columns), each, keep) for each in samples])
+    held = max((held_of(each, keep) for each in samples), default=0.0)
     return {
         "runs": plan.count,
         "samples": round(plan.count * _mean(samples)),
@@ -45,7 +46,7 @@ def plan_batch(document: str, workers: int) -> dict[str, Any]:
         "first": [plan.values(number) for number in range(min(FIRST, plan.count))],
         "refused": refused,
         "all_refused": not samples,
-        "part_size": part_size(plan.count, seconds, size, workers) if samples else 0,
+        "part_size": part_size(plan.count, seconds, size, workers, held) if samples else 0,
     }
 
 
