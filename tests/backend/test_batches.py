@@ -246,3 +246,5 @@ def test_a_cancelled_batch_keeps_its_parts_and_may_then_be_deleted(http_batches:
     ]
     assert http_batches.delete(place).json() == {}
     assert http_batches.get(place).status_code == 404
+    assert http_batches.post(f"{BATCHES}/{waiting['id']}/resume").json()["id"] == waiting["id"]
+    assert ended(http_batches, waiting["id"])["counts"]["done"] == 3
