@@ -249,18 +249,18 @@ def test_ctrl_c_before_anything_is_kept_says_no_more(here: Here, file: Path, mon
     assert [path.name for path in file.parent.iterdir()] == ["batch.json"]
 
 
-def test_the_rate_leaves_out_the_first_part_of_every_worker(
+def test_the_rate_leaves_out_the_first_part_of_every_thread(
     here: Here, file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     told: list[int] = []
 
-    class Told(Progress):
+    class Told(RunCounts):
         def __init__(self, *given: Any, **named: Any) -> None:
-            told.append(named["workers"])
+            told.append(named["threads"])
             super().__init__(*given, **named)
 
-    monkeypatch.setattr("backend.batch.progress.Progress", Told)
-    here.workers = 3
+    monkeypatch.setattr("backend.batch.progress.RunCounts", Told)
+    here.threads = 3
     assert vssea(file, "-o", file.with_name("out.parquet")).exit_code == 0
     assert told == [3]
 
@@ -308,7 +308,7 @@ HEAVY = json.dumps({"vary": [{"kind": "list", "path": "timing.sample_time_s", "v
         (["nothing.json"], "", "nothing.json cannot be read"),
         (["-"], "{", "not JSON"),
         (["-"], '{"varied": []}', "unknown name"),
-        (["-"], '{"vary": [{"kind": "grid", "path": "seed", "low": 0}]}', "it is missing"),
+        (["-"], '{"vary": [{"kind": "grid", "path": "seed", "low": 0}]}', "vary.0.high is missing"),
         (
             ["-"],
             '{"vary": [{"kind": "grid", "path": "tuning.observer.bandwith", "low": 1, "high": 2}]}',
