@@ -1,11 +1,16 @@
 """The parts of a batch that runs without a server: in a folder beside its output until that is whole.
 
-The folder holds the document and how it was divided, so that the same command goes on where it was ended.
+One command at a time has them. The folder holds the document and how it was divided, so that the same command goes on where it
+was ended.
 """
 
 import os
 import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+
+from filelock import FileLock, Timeout
 
 from backend.batch.folder import BatchFolder, Division
 from backend.batch.result_jobs import export
@@ -25,6 +30,21 @@ class BesideOutput:
     def trajectories(self) -> Path:
         """Where the samples kept go."""
         return self.output.with_name(f"{self.output.stem}-trajectories{self.output.suffix}")
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Keep every other command away from the parts and the output. Raises ValueError while another has them, OSError."""
+        lock = FileLock(f"{self.path}.lock", timeout=0)
+        try:
+            lock.acquire()
+        except Timeout:
+            raise ValueError(f"{self.path} is in use by another vssea batch; wait for it, or write elsewhere") from None
+        try:
+            yield
+        finally:
+            with suppress(OSError):
+                Path(lock.lock_file).unlink()  # while it is still held: nobody else can hold the file that goes
+            lock.release()
 
     def take_up(self, document: str, part_size: int) -> int:
         """Make the folder, or take up the one that is there, and return the runs of its parts.

@@ -16,10 +16,10 @@ from backend.refusal import refuse
 if TYPE_CHECKING:
     from backend.batch.beside_output import BesideOutput
     from backend.batch.engine import Engine
+    from backend.batch.limits import Limits
 
 ENDED_BY_USER = 130
 """Exit status of a program that Ctrl+C has ended."""
-FORMS = (".parquet", ".csv", ".arrow")
 
 
 def batch(
@@ -40,6 +40,7 @@ def batch(
 
     Ctrl+C ends it and keeps what is done: the same command goes on from there.
     """
+    from backend.batch.beside_output import FORMS
     from backend.batch.engine import PartFailed
 
     output = output or Path(f"{'batch' if file == '-' else Path(file).stem}.parquet")
@@ -51,10 +52,10 @@ def batch(
     try:
         asyncio.run(_run(document, output, workers or os.cpu_count() or 1, dask, estimate))
     except KeyboardInterrupt:
-        typer.echo(f"vssea: ended; {_goes_on(output)}", err=True)
+        typer.echo(f"vssea: ended{_goes_on(output)}", err=True)
         raise typer.Exit(ENDED_BY_USER) from None
     except PartFailed as failure:
-        refuse(f"{failure}; {_goes_on(output)}" if Path(f"{output}.parts").exists() else str(failure))
+        refuse(f"{failure}{_goes_on(output)}")
     except ValueError as refusal:
         refuse(str(refusal))
     except OSError as error:
@@ -77,46 +78,44 @@ async def _run(document: str, output: Path, workers: int, address: str | None, o
             return
         if why := why_refused(plan):
             refuse(why)
-        await _compute(engine, document, plan, BesideOutput(output))
+        beside = BesideOutput(output)
+        with beside.held():
+            await _compute(engine, document, plan, beside)
     finally:
         await engine.end()
 
 
 async def _compute(engine: "Engine", document: str, plan: dict[str, Any], beside: "BesideOutput") -> None:
-    from filelock import FileLock, Timeout
-
     from backend.batch.part_run import parts_of, run_parts
-    from backend.batch.progress import RunCounts
-    from backend.batch.result_jobs import counts
+    from backend.batch.progress import RunCounts, summed
+    from backend.batch.result_jobs import counts_by_part
     from backend.batch.terminal import shown
 
     begun_s = time.monotonic()
-    part_size = beside.take_up(document, plan["part_size"])
-    lock = FileLock(beside.path / "in-use.lock", timeout=0)
-    try:
-        lock.acquire()
-    except Timeout:
-        refuse(f"{beside.path} is in use by another vssea batch; wait for it, or write elsewhere")
-    try:
-        parts, there = parts_of(document, plan["runs"], part_size), set(beside.folder.parts())
-        progress = RunCounts(plan["runs"], len(parts), counts(str(beside.path)), len(there))
-        with shown(progress) as show:
+    parts = parts_of(document, plan["runs"], beside.take_up(document, plan["part_size"]))
+    found = counts_by_part(str(beside.path)).items()
+    there = {number: counts for number, counts in found if counts is not None}  # what cannot be read is computed again
+    progress = RunCounts(plan["runs"], len(parts), summed(there.values()), len(there), threads=engine.threads)
+    with shown(progress) as show:
 
-            async def keep(part: Any, files: Any) -> None:
-                await asyncio.to_thread(beside.folder.keep, part.number, files)
-                progress.add(files.counts)
-                show()
+        async def keep(part: Any, files: Any) -> None:
+            await asyncio.to_thread(beside.folder.keep, part.number, files)
+            progress.add(files.counts)
+            show()
 
-            await run_parts(engine, [part for part in parts if part.number not in there], keep)
-    finally:
-        lock.release()
-    written = await asyncio.to_thread(beside.finish)
+        await run_parts(engine, [part for part in parts if part.number not in there], keep)
+    finishing = asyncio.create_task(asyncio.to_thread(beside.finish))
+    try:
+        written = await asyncio.shield(finishing)
+    except asyncio.CancelledError:  # all is computed, and a thread does not end halfway
+        written = await finishing
     figures = {"runs": plan["runs"], **progress.counts, "seconds": round(time.monotonic() - begun_s, 1)}
     typer.echo(json.dumps(figures | {"written": [str(path) for path in written]}, indent=2))
 
 
 def _goes_on(output: Path) -> str:
-    return f"what is done is kept in {output}.parts, and the same command goes on from there"
+    parts = Path(f"{output}.parts")
+    return f"; what is done is kept in {parts}, and the same command goes on from there" if parts.exists() else ""
 
 
 def _engine(workers: int, address: str | None) -> Any:
@@ -134,13 +133,28 @@ def _engine(workers: int, address: str | None) -> Any:
 
 def _document(file: str) -> str:
     """Return a batch's document, whole and always written the same way."""
-    from backend.problem import from_validation
+    from backend.batch.limits import runs_of
+    from backend.problem import Problem, from_validation
     from vssea_core.batch.document import Batch
 
     try:
         text = sys.stdin.read() if file == "-" else Path(file).read_text("utf-8")
-        return Batch.model_validate_json(text).model_dump_json()
+        batch = Batch.model_validate_json(text)
+        _limits().check_runs(runs_of(batch))
+        return batch.model_dump_json()
+    except Problem as refusal:
+        refuse(refusal.detail)
     except ValidationError as error:
         refuse(from_validation(error, Batch).detail)
     except (OSError, UnicodeDecodeError) as error:
         refuse(f"{file} cannot be read: {error}; expected the file of a batch as JSON")
+
+
+def _limits() -> "Limits":
+    from backend.batch.limits import Limits
+    from backend.settings import Settings
+
+    try:
+        return Limits.of(Settings())
+    except ValueError as error:
+        refuse(" ".join(str(error).split()))

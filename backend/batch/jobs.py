@@ -1,7 +1,6 @@
 """What a batch's planning worker can do: a document in, plain answers out. The web process never imports this module."""
 
 import hashlib
-import math
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -10,18 +9,20 @@ import numpy as np
 from pydantic import ValidationError
 
 from backend.batch.asked import Asked
-from backend.batch.sizes import bytes_of, part_size, seconds_of
-from backend.problem import FieldError, Problem, from_validation, refused
-from vssea_core.batch.document import Batch, count_of
+from backend.batch.limits import runs_of
+from backend.batch.sizes import bytes_of, held_of, part_size, seconds_of
+from backend.problem import Problem, from_validation, refused
+from vssea_core.batch.document import Batch
 from vssea_core.batch.numbers import NumbersOf
 from vssea_core.batch.part import columns_of
 from vssea_core.batch.plan import BatchPlan
+from vssea_core.field_errors import FieldError
 from vssea_core.scenario import Scenario
 
 LONG: frozenset[str] = frozenset()
 PROBED = 64
 FIRST = 3
-KEPT_PLANS = 4
+KEPT_PLANS = 1
 TOLD_ERRORS = 100
 
 
@@ -36,9 +37,8 @@ def read_batch(body: bytes) -> Asked | Problem:
         errors = problem.document()["errors"][:TOLD_ERRORS]
         return refused(problem.detail, *(FieldError(**each) for each in errors))
     document = batch.model_dump_json()
-    runs = math.prod(count_of(variation) for variation in batch.vary)
     digest = hashlib.sha256(document.encode()).hexdigest()
-    return Asked(document, digest, batch.name, batch.description, batch.keep.trajectories, runs)
+    return Asked(document, digest, batch.name, batch.description, batch.keep.trajectories, runs_of(batch))
 
 
 def plan_batch(document: str, workers: int) -> dict[str, Any]:
@@ -58,6 +58,7 @@ def plan_batch(document: str, workers: int) -> dict[str, Any]:
     size = _mean([bytes_of(len(columns), each, keep) for each in samples])
     if not samples:  # a run that is refused takes time and a row, too
         run_s, size = seconds_of(0, True, keep), bytes_of(len(columns), 0, keep)
+    held = max((held_of(each, keep) for each in samples), default=0.0)
     return {
         "runs": plan.count,
         "samples": round(plan.count * _mean(samples)),
@@ -70,7 +71,7 @@ def plan_batch(document: str, workers: int) -> dict[str, Any]:
         "refused": sentences,
         "warning": "" if samples else f"none of the {len(sentences)} runs looked at can start",
         "all_refused": not samples and len(sentences) == plan.count,
-        "part_size": part_size(plan.count, run_s, size, workers),
+        "part_size": part_size(plan.count, run_s, size, workers, held),
     }
 
 

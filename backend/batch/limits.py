@@ -1,9 +1,17 @@
 """How much a batch may be: runs, bytes, and how many may wait."""
 
+import math
 from dataclasses import dataclass
 
-from backend.problem import FieldError, Problem, refused
+from backend.problem import Problem, refused
 from backend.settings import Settings
+from vssea_core.batch.document import Batch, count_of
+from vssea_core.field_errors import FieldError
+
+
+def runs_of(batch: Batch) -> int:
+    """Return how many runs a batch has."""
+    return math.prod(count_of(variation) for variation in batch.vary)
 
 
 class TooLarge(RuntimeError):

@@ -11,6 +11,8 @@ RUN_S = 1.3e-4
 PART_S = 1.5
 """A part takes about so long: little to lose, little to wait for, and little spent on giving it out."""
 PART_BYTES = 8_000_000
+HELD_BYTES = 64_000_000
+"""Samples that a worker holds while it computes a part take no more, even if every run ends early."""
 MOST_RUNS, STEP = 16_384, 16
 PARTS_A_WORKER = 8
 """A short batch still has so many parts for each worker, so that all end at about the same time."""
@@ -27,11 +29,21 @@ def seconds_of(samples: int, in_lanes: bool, keep: Keep) -> float:
 def bytes_of(columns: int, samples: int, keep: Keep) -> float:
     """Return how large the results of a run are, at most about: numbers that vary are hardly compressed."""
     share = {"none": 0.0, "ended": ENDED_SHARE, "all": 1.0}[keep.trajectories]
-    width = 8 if keep.precision == "float64" else 4
-    return 8.0 * columns + share * math.ceil(samples / keep.every) * (8.0 + width * len(keep.channels))
+    return 8.0 * columns + share * _kept(samples, keep)
 
 
-def part_size(runs: int, seconds: float, size: float, workers: int) -> int:
-    """Return how many runs make a part, from what one of them takes [s] and [bytes]."""
+def held_of(samples: int, keep: Keep) -> float:
+    """Return how large the samples of a run are while its part is computed, if they are kept."""
+    return 0.0 if keep.trajectories == "none" else _kept(samples, keep)
+
+
+def part_size(runs: int, seconds: float, size: float, workers: int, held: float = 0.0) -> int:
+    """Return how many runs make a part, from what one of them takes [s] and [bytes], and holds meanwhile [bytes]."""
     most = min(PART_S / seconds, PART_BYTES / size, MOST_RUNS, math.ceil(runs / (PARTS_A_WORKER * workers)))
-    return STEP * max(1, math.ceil(most / STEP))
+    in_steps = STEP * max(1, math.ceil(most / STEP))
+    return min(in_steps, max(1, int(HELD_BYTES / held))) if held else in_steps
+
+
+def _kept(samples: int, keep: Keep) -> float:
+    width = 8 if keep.precision == "float64" else 4
+    return math.ceil(samples / keep.every) * (8.0 + width * len(keep.channels))

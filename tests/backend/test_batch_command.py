@@ -3,6 +3,7 @@
 import asyncio
 import json
 import signal
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from distributed import LocalCluster
 from typer.testing import CliRunner, Result
 
 from backend.batch import local_engine, part_jobs
+from backend.batch.beside_output import BesideOutput
 from backend.batch.dask_engine import DaskEngine
 from backend.batch.engine import PartFailed, PartFiles, PartTask
 from backend.batch.part_files import part_files
@@ -180,6 +182,103 @@ def test_parts_of_something_else_are_never_taken_up_or_removed(here: Here, file:
     assert here.computed == [0]
 
 
+@pytest.mark.parametrize("when", ["it starts", "it computes", "it finishes"])
+def test_a_second_command_is_kept_away_from_the_first_ones_parts_until_the_output_is_whole(
+    here: Here, file: Path, monkeypatch: pytest.MonkeyPatch, when: str
+) -> None:
+    output = file.with_name("out.parquet")
+    refused: list[str] = []
+
+    def try_it(*_: Any) -> None:
+        with pytest.raises(ValueError, match=r"is in use by another vssea batch; wait") as raised, second.held():
+            pass
+        refused.append(str(raised.value))
+
+    second = BesideOutput(output)
+    if when == "it computes":
+        here.before = lambda number: try_it() if number == 1 else None
+    else:
+        name = {"it starts": "take_up", "it finishes": "finish"}[when]
+        does = getattr(BesideOutput, name)
+        monkeypatch.setattr(BesideOutput, name, lambda *given: (try_it(), does(*given), try_it())[1])
+    outcome = vssea(file, "-o", output)
+    assert outcome.exit_code == 0, outcome.stderr
+    assert len(refused) == (1 if when == "it computes" else 2)
+    assert pq.read_table(output).to_pydict() == expected()
+    with second.held():
+        second_try = vssea(file, "-o", output)
+    assert (second_try.exit_code, second_try.stderr) == (2, f"vssea: {refused[0]}\n")
+    assert sorted(path.name for path in file.parent.iterdir()) == [
+        "batch.json",
+        "out-trajectories.parquet",
+        "out.parquet",
+    ]
+
+
+def test_ctrl_c_while_the_output_is_written_comes_too_late(
+    here: Here, file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    output, finish, ended = file.with_name("out.parquet"), BesideOutput.finish, threading.Event()
+
+    def interrupted(beside: BesideOutput) -> list[Path]:
+        signal.raise_signal(signal.SIGINT)
+        assert ended.wait(20.0)  # until the loop has heard of it
+        return finish(beside)
+
+    monkeypatch.setattr(BesideOutput, "finish", interrupted)
+    shield = asyncio.shield
+
+    async def shielded(task: Any) -> Any:
+        try:
+            return await shield(task)
+        finally:
+            ended.set()
+
+    monkeypatch.setattr(asyncio, "shield", shielded)
+    outcome = vssea(file, "-o", output)
+    assert (outcome.exit_code, outcome.stderr) == (0, "")
+    assert json.loads(outcome.stdout)["done"] == 40
+    assert pq.read_table(output).to_pydict() == expected()
+    assert not output.with_name("out.parquet.parts").exists()
+
+
+def test_ctrl_c_before_anything_is_kept_says_no_more(here: Here, file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(BesideOutput, "take_up", lambda *given: (signal.raise_signal(signal.SIGINT), 16)[1])
+    outcome = vssea(file, "-o", file.with_name("out.parquet"))
+    assert (outcome.exit_code, outcome.stderr) == (130, "vssea: ended\n")
+    assert [path.name for path in file.parent.iterdir()] == ["batch.json"]
+
+
+def test_the_rate_leaves_out_the_first_part_of_every_thread(
+    here: Here, file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[int] = []
+
+    class Told(RunCounts):
+        def __init__(self, *given: Any, **named: Any) -> None:
+            told.append(named["threads"])
+            super().__init__(*given, **named)
+
+    monkeypatch.setattr("backend.batch.progress.RunCounts", Told)
+    here.threads = 3
+    assert vssea(file, "-o", file.with_name("out.parquet")).exit_code == 0
+    assert told == [3]
+
+
+def test_a_batch_has_no_more_runs_than_the_setting_allows(
+    here: Here, file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("VSSEA_BATCH_MOST_RUNS", "39")
+    outcome = vssea(file)
+    assert outcome.exit_code == 2
+    assert (
+        "The batch has 40 runs; expected at most 39 runs. Vary less, or raise VSSEA_BATCH_MOST_RUNS." in outcome.stderr
+    )
+    monkeypatch.setenv("VSSEA_BATCH_MOST_RUNS", "none")
+    assert "batch_most_runs" in vssea(file).stderr
+    assert [path.name for path in file.parent.iterdir()] == ["batch.json"]
+
+
 def test_without_an_output_the_table_is_named_after_the_file(
     here: Here, file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -209,7 +308,7 @@ HEAVY = json.dumps({"vary": [{"kind": "list", "path": "timing.sample_time_s", "v
         (["nothing.json"], "", "nothing.json cannot be read"),
         (["-"], "{", "not JSON"),
         (["-"], '{"varied": []}', "unknown name"),
-        (["-"], '{"vary": [{"kind": "grid", "path": "seed", "low": 0}]}', "it is missing"),
+        (["-"], '{"vary": [{"kind": "grid", "path": "seed", "low": 0}]}', "vary.0.high is missing"),
         (
             ["-"],
             '{"vary": [{"kind": "grid", "path": "tuning.observer.bandwith", "low": 1, "high": 2}]}',

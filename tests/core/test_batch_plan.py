@@ -1,6 +1,7 @@
 """A batch document says which runs there are: crossed, zipped, drawn, by path; and refuses what makes no sense in a sentence."""
 
 import itertools
+import tracemalloc
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from scipy import stats
 from vssea_core.batch.document import Batch
 from vssea_core.batch.part import Part, run_part
 from vssea_core.batch.plan import BatchPlan
+from vssea_core.channels import CHANNELS
 from vssea_core.scenarios import NOMINAL
 
 INERTIA, BANDWIDTH = "actuator.link.inertia", "tuning.observer.bandwidth"
@@ -173,3 +175,20 @@ def test_samples_are_kept_of_the_runs_and_channels_that_were_asked_for() -> None
     assert np.bincount(part.trajectories["run"]).tolist() == [20, 20]  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="nearest: link_position"):
         plan(keep={"channels": ["link_pos"]})
+
+
+def test_a_part_holds_of_its_samples_what_is_kept_and_no_more() -> None:
+    keep = {"trajectories": "all", "every": 50}
+    runs = plan(grid(INERTIA, 0.1, 0.2, 32), keep=keep, scenario={"duration_s": 2.0})
+    tracemalloc.start()
+    try:
+        part = run_part(runs, 0, 16)  # what is kept from part to part is there after this one
+        before = tracemalloc.get_traced_memory()[0]
+        tracemalloc.reset_peak()
+        part = run_part(runs, 16, 16)
+        held = tracemalloc.get_traced_memory()[1] - before
+    finally:
+        tracemalloc.stop()
+    assert part is not None
+    whole_run = 2000 * len(CHANNELS) * 8
+    assert whole_run < held < 5 * whole_run  # one trajectory at a time, not 16

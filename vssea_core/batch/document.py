@@ -1,6 +1,7 @@
 """The batch document: a base scenario, how it is varied, and what is kept of each run. Imports no numba and no scipy."""
 
 import difflib
+import math
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, JsonValue, field_validator, model_validator
@@ -34,6 +35,14 @@ class Listed(Part):
     values: tuple[JsonValue, ...] = Field(min_length=1, max_length=100_000)
     factor: bool = Field(False, description="Whether the values are factors of what the base scenario has there.")
 
+    @field_validator("values")
+    @classmethod
+    def _are_finite(cls, values: tuple[JsonValue, ...]) -> tuple[JsonValue, ...]:
+        for place, value in enumerate(values):
+            if not _is_finite(value):
+                raise ValueError(f"value {place} is or holds {value}; expected finite numbers")  # JSON has no others
+        return values
+
 
 class Uniform(Part):
     """Any value between two ends, each as likely as the others."""
@@ -42,6 +51,11 @@ class Uniform(Part):
     low: Number
     high: Number
 
+    @model_validator(mode="after")
+    def _ends_in_order(self) -> Self:
+        _check_ends(self.low, self.high)
+        return self
+
 
 class LogUniform(Part):
     """Any value between two positive ends, each decade as likely as the others."""
@@ -49,6 +63,11 @@ class LogUniform(Part):
     kind: Literal["log_uniform"] = kind("log_uniform")
     low: Number = Field(gt=0.0)
     high: Number = Field(gt=0.0)
+
+    @model_validator(mode="after")
+    def _ends_in_order(self) -> Self:
+        _check_ends(self.low, self.high)
+        return self
 
 
 class Normal(Part):
@@ -148,3 +167,22 @@ def count_of(variation: Grid | Listed | Sample | Zipped) -> int:
             return count_of(variation.members[0])
         case _:
             return variation.count
+
+
+def _check_ends(low: float, high: float) -> None:
+    if low > high:
+        raise ValueError(f"low is {low:g} and high {high:g}; expected low not above high")
+    if not math.isfinite(high - low):
+        raise ValueError(f"{low:g} and {high:g} are further apart than the largest number; expected closer ends")
+
+
+def _is_finite(value: JsonValue) -> bool:
+    match value:
+        case float():
+            return math.isfinite(value)
+        case list():
+            return all(map(_is_finite, value))
+        case dict():
+            return all(map(_is_finite, value.values()))
+        case _:
+            return True

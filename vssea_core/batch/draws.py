@@ -27,11 +27,36 @@ def unit_cube(sample: Sample, seed: int, place: int) -> Numbers:
 
 def drawn(distribution: Uniform | LogUniform | Normal, unit: Numbers) -> Numbers:
     """Return values of a distribution at numbers (n,) between 0 and 1, by the inverse of its cumulative distribution."""
+    low, high = ends_of(distribution)
     match distribution:
-        case Uniform(low=low, high=high):
-            return low + (high - low) * unit
-        case LogUniform(low=low, high=high):
-            return np.asarray(low * np.exp(math.log(high / low) * unit))
+        case Uniform():
+            values = low + (high - low) * unit
+        case LogUniform():
+            values = np.exp(math.log(low) + (math.log(high) - math.log(low)) * unit)
         case Normal(mean=mean, std=std, within=within):
             edge = float(ndtr(-within))
-            return np.asarray(mean + std * np.clip(ndtri(edge + (1.0 - 2.0 * edge) * unit), -within, within))
+            values = mean + std * np.clip(ndtri(edge + (1.0 - 2.0 * edge) * unit), -within, within)
+    return np.clip(values, low, high)  # rounding may lead beyond an end
+
+
+def drawn_whole(distribution: Uniform | LogUniform | Normal, unit: Numbers, factor_of: int = 1) -> Numbers:
+    """Return whole numbers of a distribution, its values times `factor_of`; uniform ones are each as likely as the others.
+
+    Raises ValueError if there are none between its ends.
+    """
+    low, high = sorted(factor_of * end for end in ends_of(distribution))
+    first, last = float(np.ceil(low)), float(np.floor(high))
+    if first > last:
+        raise ValueError(f"no whole number lies between {low:g} and {high:g}")
+    if isinstance(distribution, Uniform):
+        return np.clip(first + np.floor(unit * (last - first + 1.0)), first, last)
+    return np.clip(np.rint(factor_of * drawn(distribution, unit)), first, last)
+
+
+def ends_of(distribution: Uniform | LogUniform | Normal) -> tuple[float, float]:
+    """Return the least and the largest value of a distribution."""
+    match distribution:
+        case Normal(mean=mean, std=std, within=within):
+            return mean - std * within, mean + std * within
+        case _:
+            return distribution.low, distribution.high

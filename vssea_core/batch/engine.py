@@ -52,8 +52,8 @@ def run_scenarios(
             if isinstance(scenario, ValueError):
                 raise scenario
             numbers = numbers_of(scenario)
-        except ValueError as refusal:
-            outcomes[place] = Outcome("refused", REFUSED, 0.0, str(refusal))
+        except (ValueError, ArithmeticError) as refusal:
+            outcomes[place] = _refused(refusal)
         else:
             kind = (
                 numbers.variant,
@@ -88,7 +88,18 @@ def run_alone(scenario: Scenario) -> Outcome:
 
 
 def _alone(runs: Iterable[tuple[int, RunNumbers]]) -> dict[int, Outcome]:
-    return {place: run_alone(numbers.scenario) for place, numbers in runs}
+    outcomes = dict[int, Outcome]()
+    for place, numbers in runs:
+        try:
+            outcomes[place] = run_alone(numbers.scenario)
+        except (ValueError, ArithmeticError) as refusal:  # one run never costs the others
+            outcomes[place] = _refused(refusal)
+    return outcomes
+
+
+def _refused(refusal: ValueError | ArithmeticError) -> Outcome:
+    is_told = isinstance(refusal, ValueError)
+    return Outcome("refused", REFUSED, 0.0, str(refusal) if is_told else f"its values lead to an {refusal!r}")
 
 
 def _side_by_side(variant: Variant, runs: Sequence[tuple[int, RunNumbers]], courses: CourseBook) -> dict[int, Outcome]:

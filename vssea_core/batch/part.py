@@ -44,13 +44,13 @@ def run_part(
     if outcomes is None:
         return None
     rows = _rows(plan, numbers, outcomes)
-    kept: list[tuple[int, NDArray[np.float64]]] = []
+    kept: list[tuple[int, dict[str, NDArray[Any]]]] = []
     for number, scenario, outcome in zip(numbers, scenarios, outcomes, strict=True):
         if isinstance(scenario, Scenario) and outcome.state in SAMPLED[keep.trajectories]:
-            kept.append((number, simulate(scenario).rows[:: keep.every]))
+            kept.append((number, _samples(keep, simulate(scenario).rows)))
             if not goes_on(len(outcomes)):
                 return None
-    return Part(rows, _samples(keep, kept))
+    return Part(rows, _joined(kept))
 
 
 def columns_of(plan: BatchPlan) -> tuple[str, ...]:
@@ -77,15 +77,18 @@ def _column(values: list[Any], kind: type) -> Column:
     return np.array(values, dtype=kind)
 
 
-def _samples(keep: Keep, kept: list[tuple[int, NDArray[np.float64]]]) -> dict[str, Column]:
+def _samples(keep: Keep, rows: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
+    """Return what is kept of a trajectory, as copies: a view would hold all of it for as long as the part is computed."""
+    some = rows[:: keep.every]
+    channels = {name: some[:, INDEX[name]].astype(keep.precision) for name in keep.channels if name != "time"}
+    return {"time": some[:, INDEX["time"]].copy(), **channels}
+
+
+def _joined(kept: list[tuple[int, dict[str, NDArray[Any]]]]) -> dict[str, Column]:
     if not kept:
         return {}
-    rows = np.concatenate([samples for _, samples in kept])
-    names = [name for name in keep.channels if name != "time"]
+    numbers, lengths = [number for number, _ in kept], [len(samples["time"]) for _, samples in kept]
     return {
-        "run": np.repeat(
-            np.array([number for number, _ in kept], dtype=np.int64), [len(samples) for _, samples in kept]
-        ),
-        "time": rows[:, INDEX["time"]],
-        **{name: rows[:, INDEX[name]].astype(keep.precision) for name in names},
+        "run": np.repeat(np.array(numbers, dtype=np.int64), lengths),
+        **{name: np.concatenate([samples[name] for _, samples in kept]) for name in kept[0][1]},
     }

@@ -2,17 +2,19 @@
 
 import copy
 import difflib
+import itertools
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from vssea_core.batch.columns import Column, drawn_column, grid_column, item, listed_column, type_of
 from vssea_core.batch.document import Batch, Draw, Grid, Listed, Sample, Variation, Zipped, count_of
-from vssea_core.batch.draws import drawn, unit_cube
+from vssea_core.batch.draws import unit_cube
 from vssea_core.batch.runs import Runs, Values
 from vssea_core.changes import UnknownPath, paths_of, set_value, value_at
 from vssea_core.scenario import Scenario
@@ -26,15 +28,16 @@ class BatchPlan:
     def __init__(self, batch: Batch) -> None:
         self.batch = batch
         self._document = batch.scenario.model_dump(mode="json")
-        self._columns = [self._columns_of(variation, place) for place, variation in enumerate(batch.vary)]
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused in a sentence
+            self._columns = [[*self._columns_of(variation, place)] for place, variation in enumerate(batch.vary)]
         self._lengths = [count_of(variation) for variation in batch.vary]
         self.count = math.prod(self._lengths)
-        self.paths = tuple(path for columns in self._columns for path in columns)
-        self.types = {path: _type_of(column) for columns in self._columns for path, column in columns.items()}
+        self.paths = tuple(path for columns in self._columns for path, _ in columns)
+        self.types = {path: type_of(column) for columns in self._columns for path, column in columns}
         """What a column of values is: whole numbers, numbers, or text (with JSON for what is neither)."""
-        twice = next((path for path in self.paths if self.paths.count(path) > 1), None)
-        if twice is not None:
-            raise ValueError(f"vary: {twice} is varied twice; expected each field once")
+        _check_apart(self.paths)
+        if batch.noise == "own" and "seed" in self.paths:
+            raise ValueError("vary: seed is varied, and noise own gives each run a seed too; expected one of them")
 
     def values(self, index: int) -> Values:
         """Return the values by path of run `index` (from 0). Raises IndexError."""
@@ -42,9 +45,9 @@ class BatchPlan:
             raise IndexError(f"run {index}; expected 0 to {self.count - 1}")
         places = np.unravel_index(index, self._lengths) if self._lengths else ()
         return {
-            path: column[int(place)]
+            path: item(column, int(place))
             for columns, place in zip(self._columns, places, strict=True)
-            for path, column in columns.items()
+            for path, column in columns
         }
 
     def scenario(self, index: int) -> Scenario:
@@ -66,38 +69,35 @@ class BatchPlan:
     def _runs(self) -> Runs:
         return Runs(self.batch.scenario)
 
-    def _columns_of(self, variation: Variation, place: int) -> dict[str, list[Any]]:
+    def _columns_of(self, variation: Variation, place: int) -> Iterator[tuple[str, Column]]:
         match variation:
             case Zipped():
-                return {
-                    path: column
-                    for member in variation.members
-                    for path, column in self._columns_of(member, place).items()
-                }
+                for member in variation.members:
+                    yield from self._columns_of(member, place)
             case Sample():
                 cube = unit_cube(variation, self.batch.seed, place)
-                columns = {draw.path: drawn(draw.distribution, cube[:, i]) for i, draw in enumerate(variation.draws)}
-                return {draw.path: self._scaled(draw, columns[draw.path].tolist()) for draw in variation.draws}
+                for draw, unit in zip(variation.draws, cube.T, strict=True):
+                    yield draw.path, drawn_column(draw, unit, *self._base_of(draw))
             case Grid():
                 if variation.spacing == "log" and not (variation.low > 0.0 and variation.high > 0.0):
                     ends = f"{variation.low:g} to {variation.high:g}"
                     raise ValueError(f"vary: {variation.path} goes from {ends}; a log grid needs positive ends")
-                space = np.geomspace if variation.spacing == "log" else np.linspace
-                values = space(variation.low, variation.high, variation.count).tolist()
-                return {variation.path: self._scaled(variation, values)}
+                yield variation.path, grid_column(variation, *self._base_of(variation))
             case Listed():
-                return {variation.path: self._scaled(variation, list(variation.values))}
+                yield variation.path, listed_column(variation, *self._base_of(variation))
 
-    def _scaled(self, varied: Grid | Listed | Draw, values: list[Any]) -> list[Any]:
+    def _base_of(self, varied: Grid | Listed | Draw) -> tuple[float, bool]:
+        """Return what values are factors of (1 if they are none), and whether the field has a whole number. Raises ValueError."""
         base = self._present(varied.path)
         whole = isinstance(base, int) and not isinstance(base, bool)
-        if varied.factor:
-            if not all(isinstance(x, int | float) and not isinstance(x, bool) for x in (base, *values)):
-                raise ValueError(
-                    f"vary: {varied.path} is {json.dumps(base)}; a factor needs a number there, and has to be one"
-                )
-            values = [base * value for value in values]
-        return [round(value) for value in values] if whole and all(isinstance(x, float) for x in values) else values
+        if not varied.factor:
+            return 1, whole
+        factors = varied.values if isinstance(varied, Listed) else ()
+        if not all(isinstance(x, int | float) and not isinstance(x, bool) for x in (base, *factors)):
+            raise ValueError(
+                f"vary: {varied.path} is {json.dumps(base)}; a factor needs a number there, and has to be one"
+            )
+        return base, whole
 
     def _present(self, path: str) -> Any:
         """Return what the base has at a path, None where only another kind has it. Raises ValueError."""
@@ -124,7 +124,15 @@ class BatchPlan:
                         yield document
 
 
-def _type_of(column: list[Any]) -> type:
-    if any(isinstance(value, bool) or not isinstance(value, int | float) for value in column):
-        return str
-    return int if all(isinstance(value, int) for value in column) else float
+def _check_apart(paths: Sequence[str]) -> None:
+    """Raise ValueError for a field that is varied twice, by itself or within a part that is varied too."""
+    for (outer_names, outer), (names, path) in itertools.pairwise(sorted((_names(path), path) for path in paths)):
+        if outer_names == names:
+            raise ValueError(f"vary: {path} is varied twice; expected each field once")
+        if names[: len(outer_names)] == outer_names:
+            raise ValueError(f"vary: {path} is varied, and so is all of {outer}; expected one of them")
+
+
+def _names(path: str) -> tuple[str, ...]:
+    """Return the names that a path leads through; item 00 of a list is item 0."""
+    return tuple(str(int(name)) if name.isdecimal() else name for name in path.split("."))
