@@ -39,14 +39,21 @@ async def begun(worker: Worker, job: str, **more: Any) -> asyncio.Task[Any]:
 
 def test_a_job_needs_no_thread_of_those_that_others_wait_for() -> None:
     async def work(worker: Worker) -> None:
-        asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(1))
-        held = threading.Event()
-        busy = asyncio.create_task(asyncio.to_thread(held.wait, PATIENCE_S))  # all threads that there are
+        loop, busy, held = asyncio.get_running_loop(), asyncio.Event(), threading.Event()
+        loop.set_default_executor(ThreadPoolExecutor(1))
+
+        def hold() -> bool:
+            loop.call_soon_threadsafe(busy.set)
+            return held.wait(PATIENCE_S)
+
+        only = asyncio.create_task(asyncio.to_thread(hold))
+        await busy.wait()
         try:
-            assert await worker.run("answer", 7) == 7
+            async with asyncio.timeout(PATIENCE_S / 4):
+                assert await worker.run("answer", 7) == 7
         finally:
             held.set()
-        assert await busy
+        assert await only
 
     with_worker(work)
 
