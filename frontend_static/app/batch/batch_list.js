@@ -17,7 +17,8 @@ export class BatchList {
     this.list = element("ol", { class: "batch-list" });
     this.problem = element("p", { class: "form-problem", role: "status", hidden: true });
     this.empty = element("p", { class: "hint" }, "Loading…");
-    this.root = element("section", { class: "side-panel batch-list-panel", "aria-label": "Batches" }, element("h2", {}, "Batches"), this.problem, this.list, this.empty);
+    this.title = element("h2", {}, "Batches");
+    this.root = element("section", { class: "side-panel batch-list-panel", "aria-label": "Batches" }, this.title, this.problem, this.list, this.empty);
     batches.addEventListener("list", () => this.#show());
     batches.addEventListener("problem", () => {
       setText(this.problem, batches.problem);
@@ -37,8 +38,9 @@ export class BatchList {
   #reveal() {
     const line = this.#lines.get(this.marked)?.root;
     if (!line) return;
-    const [box, own] = [this.root.getBoundingClientRect(), line.getBoundingClientRect()];
-    this.root.scrollTop += Math.min(0, own.top - box.top) + Math.max(0, own.bottom - box.bottom);
+    const [top, bottom] = [this.title.getBoundingClientRect().bottom, this.root.getBoundingClientRect().bottom];
+    const own = line.getBoundingClientRect();
+    this.root.scrollTop += Math.min(0, own.top - top) + Math.max(0, own.bottom - bottom);
   }
 
   #show() {
