@@ -397,6 +397,27 @@ def test_the_list_and_start_stay_in_sight_however_long_the_form_is(
     expect(page.locator(".variation")).to_have_count(4)
 
 
+def test_the_list_is_one_stop_of_the_tab_key_and_arrow_keys_move_in_it(
+    running: Server, open_page: OpenPage, mapped: str, partly_refused: str
+) -> None:
+    page = open_page(running)
+    batch_view(page, mapped)
+    titles = page.locator(".batch-title")
+    assert titles.count() > 1
+    page.get_by_role("button", name="New batch").focus()
+    page.keyboard.press("Tab")
+    expect(page.locator(f".batch[data-id='{mapped}'] .batch-title")).to_be_focused()
+    page.keyboard.press("End")
+    expect(titles.last).to_be_focused()
+    page.keyboard.press("ArrowUp")
+    expect(titles.nth(titles.count() - 2)).to_be_focused()
+    page.keyboard.press("Tab")
+    expect(page.locator(".batch-list :focus")).to_have_text("Delete")
+    page.keyboard.press("Tab")
+    expect(page.locator(".batch-list :focus")).to_have_count(0)
+    expect(page.locator("#batch-main :focus")).to_have_count(1)
+
+
 def test_results_that_cannot_be_fetched_are_told_and_fetched_again(
     running: Server, open_page: OpenPage, mapped: str
 ) -> None:
