@@ -25,14 +25,6 @@ MEDIA_TYPES = {
 }
 
 
-def counts(folder: str) -> dict[str, int]:
-    """Return how many runs there are by state, in the parts that are there and can be read."""
-    found = Counter[str]()
-    for part in counts_by_part(folder).values():
-        found.update(part or {})
-    return dict(found)
-
-
 def counts_by_part(folder: str) -> dict[int, dict[str, int] | None]:
     """Return the runs by state of each part that is there, None for one that cannot be read."""
     batch = BatchFolder(Path(folder))

@@ -213,6 +213,28 @@ def test_trajectories_are_those_of_single_runs(http_batches: httpx.Client) -> No
         assert table[name].to_numpy()[17 * 40 : 18 * 40].tolist() == rows[:, names.index(name)].tolist()
 
 
+def test_a_damaged_part_is_named_and_resuming_computes_it_again(http_batches: httpx.Client, server: Server) -> None:
+    found = done(http_batches, batch(grid(INERTIA, 0.1, 0.2, 40)))
+    place = f"{BATCHES}/{found['id']}"
+    whole = http_batches.get(f"{place}/results").json()
+    part = server.errors.parent / "batches" / found["id"] / "part-00001.parquet"
+    part.write_bytes(part.read_bytes()[:-20])
+    for wanted in ("results", "results.parquet", "runs/17"):
+        detail = problem_of(http_batches.get(f"{place}/{wanted}"), 422)["detail"]
+        assert "The file part-00001.parquet of this batch's results is damaged; resume the batch" in detail
+    assert http_batches.post(f"{place}/resume").json()["id"] == found["id"]
+    assert ended(http_batches, found["id"])["state"] == "done"
+    assert http_batches.get(f"{place}/results").json() == whole
+
+
+@pytest.mark.parametrize("wanted", ["document", "runs/0", "runs/0/scenario"])
+def test_a_document_that_is_gone_is_told(http_batches: httpx.Client, server: Server, wanted: str) -> None:
+    found = done(http_batches, batch(grid(INERTIA, 0.1, 0.2, 3)))
+    (server.errors.parent / "batches" / found["id"] / "batch.json").unlink()
+    detail = problem_of(http_batches.get(f"{BATCHES}/{found['id']}/{wanted}"), 404)["detail"]
+    assert "Put the file back, or delete the batch." in detail
+
+
 def test_a_page_hears_of_each_state(http_batches: httpx.Client, server: Server) -> None:
     page = LivePage(server)
     try:
