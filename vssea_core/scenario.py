@@ -11,6 +11,7 @@ from pydantic import Field, JsonValue, ValidationError, model_validator
 from vssea_core.actuator.parameters import Actuator, Sensors, Timing
 from vssea_core.changes import UnknownPath, set_values
 from vssea_core.control.tuning import NoObserver, Tuning, VelocityObserver
+from vssea_core.field_errors import field_errors, sentence_of
 from vssea_core.fields import Part, parameter
 from vssea_core.signals.documents import ConstantStiffness, Disturbances, Reference, SineReference, StiffnessReference
 
@@ -121,9 +122,7 @@ def after_changes(scenario: Scenario) -> list[tuple[float, Scenario]]:
         except UnknownPath as unknown:
             raise ValueError(f"sequence.{number}: {unknown}") from unknown
         except ValidationError as error:
-            first = error.errors(include_url=False)[0]
-            place = ".".join(map(str, first["loc"]))
-            raise ValueError(f"sequence.{number}: {place} {first['msg'].removeprefix('Value error, ')}") from error
+            raise ValueError(f"sequence.{number}: {sentence_of(field_errors(error, Scenario))}") from error
     return followers
 
 

@@ -11,9 +11,10 @@ from pydantic import BaseModel, ValidationError
 from backend.api.resources import body_of
 from backend.compute.pool import JobFailedError, JobRefusedError, Pool
 from backend.compute.requests import BandwidthRequest, LoopRequest, MapRequest, PaperRequest, WorstCaseRequest
-from backend.problem import FieldError, Problem, from_validation, refused
+from backend.problem import Problem, from_validation, refused
 from backend.session.session import Session
 from backend.tasks.tasks import Tasks
+from vssea_core.field_errors import FieldError
 
 ANALYSIS_LIMIT_S = 30.0
 KINDS: dict[str, type[BaseModel]] = {

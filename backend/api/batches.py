@@ -1,4 +1,4 @@
-"""Batches over REST: estimated, started, watched, cancelled; their results by pages or whole. Workers plan and read them."""
+"""Batches over REST: estimated, started, watched, ended, resumed; their results by pages or whole. Workers plan and read."""
 
 import asyncio
 import json
@@ -70,6 +70,11 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
     async def cancel(batch: str) -> Document:
         """End a batch that waits or runs; the parts that are done stay."""
         return await batches.cancel(batch)
+
+    @router.post("/{batch}/resume")
+    async def resume(batch: str) -> Document:
+        """Let a batch that has ended go on with the parts that are missing."""
+        return await batches.resume(batch)
 
     @router.delete("/{batch}")
     async def delete(batch: str) -> Document:

@@ -4,9 +4,10 @@ import re
 
 from fastapi import Request, Response
 
-from backend.problem import FieldError, refused
+from backend.problem import refused
 from backend.store.document import Document
 from backend.store.expected import ANY, NEW, Expected
+from vssea_core.field_errors import FieldError
 
 _TAG = re.compile(r'\s*(?:W/)?"([^"]*)"\s*(?:,|$)')
 

@@ -7,7 +7,8 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, Response
 from starlette.exceptions import HTTPException
 
-from backend.problem import UNEXPECTED, FieldError, Problem
+from backend.problem import UNEXPECTED, Problem
+from vssea_core.field_errors import FieldError
 
 logger = logging.getLogger(__name__)
 

@@ -11,7 +11,8 @@ from starlette.background import BackgroundTask
 
 from backend.api.conditions import expected_of
 from backend.compute.pool import JobFailedError, JobRefusedError
-from backend.problem import FieldError, Problem, refused
+from backend.problem import Problem, refused
+from vssea_core.field_errors import FieldError
 
 Answer = TypeVar("Answer")
 NUMBER = re.compile(r"\d+")

@@ -12,11 +12,12 @@ from fastapi import APIRouter, Query, Request
 from backend.api.reading import document_of, number_of, read
 from backend.api.resources import body_named, body_of
 from backend.compute.pool import Hearer, JobCancelledError, Pool
-from backend.problem import FieldError, Problem, refused
+from backend.problem import Problem, refused
 from backend.recordings.layout import FORMAT
 from backend.recordings.library import Library
 from backend.tasks.tasks import Tasks
 from vssea_core import __version__
+from vssea_core.field_errors import FieldError
 
 LARGEST_LOG = 500_000_000
 PIECE = 1_000_000

@@ -4,7 +4,6 @@ One command at a time has them. The folder holds the document and how it was div
 was ended.
 """
 
-import json
 import os
 import shutil
 from collections.abc import Iterator
@@ -13,11 +12,10 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
-from backend.batch.folder import BatchFolder
+from backend.batch.folder import BatchFolder, Division
 from backend.batch.result_jobs import export
-from vssea_core.compiled import cache_folder
+from backend.batch.version import model_version
 
-DIVIDED = "parts.json"
 FORMS = {".parquet": "parquet", ".csv": "csv", ".arrow": "arrow"}
 
 
@@ -53,26 +51,22 @@ class BesideOutput:
 
         Raises ValueError if it is of another document or version, OSError.
         """
-        version = cache_folder().name
         if not self.path.exists():
             new = BatchFolder(self.path.with_name(f"{self.path.name}.new"))
             new.delete()
-            new.create(document)
-            (new.path / DIVIDED).write_text(json.dumps({"part_size": part_size, "version": version}), "utf-8")
+            new.create(document, Division(part_size, model_version()))
             new.path.rename(self.path)
             return part_size
-        try:
-            there, divided = self.folder.document(), json.loads((self.path / DIVIDED).read_text("utf-8"))
-            size = int(divided["part_size"])
-        except (FileNotFoundError, ValueError, KeyError, TypeError) as error:
-            raise ValueError(f"{self.path} is no folder of a batch's parts; remove it, or write elsewhere") from error
-        if there != document:
+        division = self.folder.division()
+        if division is None or not self.folder.document_path.exists():
+            raise ValueError(f"{self.path} is no folder of a batch's parts; remove it, or write elsewhere")
+        if self.folder.document() != document:
             raise ValueError(f"{self.path} holds parts of another batch; remove it, or write elsewhere")
-        if divided.get("version") != version:
+        if division.version != model_version():
             raise ValueError(
                 f"{self.path} holds parts computed by another version of the model; remove it, or write elsewhere"
             )
-        return size
+        return division.part_size
 
     def finish(self) -> list[Path]:
         """Write the output, and the samples if any were kept, remove the parts, and return what was written. Raises OSError."""

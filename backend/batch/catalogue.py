@@ -1,6 +1,7 @@
 """The batches that are known, in the database: what was asked for, and what became of it."""
 
 import json
+import logging
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -9,8 +10,12 @@ import sqlalchemy as sa
 from backend.store.database import Database
 from backend.store.tables import BATCHES
 
+logger = logging.getLogger(__name__)
 ACTIVE = ("queued", "running")
 STATES = (*ACTIVE, "done", "cancelled", "failed")
+FACTS: dict[str, Any] = {"description": "", "paths": [], "columns": [], "trajectories": "none", "engine": ""}
+"""What every summary has."""
+DAMAGED = "its record in the database is damaged; delete the batch and start its document anew"
 
 
 @dataclass(frozen=True)
@@ -62,10 +67,10 @@ class BatchCatalogue:
         return self._one(BATCHES.c.key == key)
 
     def active(self) -> list[Row]:
-        """Return the batches that have not ended, oldest first."""
+        """Return the batches that have not ended and can be read, oldest first."""
         asked = sa.select(BATCHES).where(BATCHES.c.state.in_(ACTIVE)).order_by(BATCHES.c.created_at, BATCHES.c.id)
         with self._database.connect() as connection:
-            return [_row(found) for found in connection.execute(asked)]
+            return [row for found in connection.execute(asked) if (row := _row(found)).state in ACTIVE]
 
     def list(self, state: str | None, offset: int, limit: int) -> tuple[int, list[Row]]:
         """Return how many batches there are, and some of them, newest first."""
@@ -91,4 +96,13 @@ def _values(row: Row) -> dict[str, Any]:
 
 
 def _row(found: Any) -> Row:
-    return Row(**{**found._mapping, "summary": json.loads(found.summary)})
+    """Return a batch; one whose record is damaged has failed, so that it is seen and can be deleted, and the others go on."""
+    columns = dict(found._mapping)
+    try:
+        summary = json.loads(columns.pop("summary"))
+        if not isinstance(summary, dict) or not FACTS.keys() <= summary.keys():
+            raise ValueError("it lacks what every batch has")
+    except (TypeError, ValueError) as error:
+        logger.warning("the record of batch %s is damaged: %s", found.id, error)
+        return Row(**columns | {"state": "failed", "reason": DAMAGED}, summary=FACTS)
+    return Row(**columns, summary=summary)

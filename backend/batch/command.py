@@ -72,7 +72,7 @@ async def _run(document: str, output: Path, workers: int, address: str | None, o
     try:
         if address is not None:
             await engine.connect()
-            workers = engine.workers
+            workers = engine.threads
         plan = plan_batch(document, workers)
         if only_estimate:
             typer.echo(json.dumps({name: plan[name] for name in TOLD}, indent=2, ensure_ascii=False))
@@ -88,14 +88,14 @@ async def _run(document: str, output: Path, workers: int, address: str | None, o
 
 async def _compute(engine: "Engine", document: str, plan: dict[str, Any], beside: "BesideOutput") -> None:
     from backend.batch.part_run import parts_of, run_parts
-    from backend.batch.progress import Progress
+    from backend.batch.progress import RunCounts
     from backend.batch.result_jobs import counts
     from backend.batch.terminal import shown
 
     begun_s = time.monotonic()
     parts = parts_of(document, plan["runs"], beside.take_up(document, plan["part_size"]))
     there = set(beside.folder.parts())
-    progress = Progress(plan["runs"], len(parts), counts(str(beside.path)), len(there), workers=engine.workers)
+    progress = RunCounts(plan["runs"], len(parts), counts(str(beside.path)), len(there), threads=engine.threads)
     with shown(progress) as show:
 
         async def keep(part: Any, files: Any) -> None:

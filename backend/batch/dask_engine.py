@@ -11,7 +11,7 @@ import re
 from typing import Any
 from uuid import uuid4
 
-from backend.batch.engine import PartFailed, PartFiles, PartTask, WorkerLost
+from backend.batch.engine import OutOfReach, PartFailed, PartFiles, PartTask, WorkerLost
 
 CONNECT_LIMIT_S = 10.0
 AHEAD = 2
@@ -49,16 +49,21 @@ class DaskEngine:
         return f"Dask at {self._address}" + (f", {threads} thread{'' if threads == 1 else 's'}" if threads else "")
 
     @property
-    def workers(self) -> int:
-        """How many parts may be under way now; one, which waits, while the cluster has no worker."""
+    def threads(self) -> int:
+        """How many parts are computed at the same time, 1 while the cluster has no worker."""
+        return max(1, self._threads)
+
+    @property
+    def at_a_time(self) -> int:
+        """How many parts may be given out now; one, which waits, while the cluster has no worker."""
         return max(1, AHEAD * self._threads)
 
     async def connect(self) -> None:
-        """Connect now, so that `workers` is known. Raises PartFailed if the scheduler is out of reach."""
+        """Connect now, so that `threads` is known. Raises OutOfReach if no scheduler answers."""
         await self._connected()
 
     async def run(self, part: PartTask) -> PartFiles:
-        """Return a computed part. Raises PartFailed, also if the scheduler is out of reach, or WorkerLost."""
+        """Return a computed part. Raises OutOfReach if no scheduler answers, PartFailed, WorkerLost."""
         from distributed import KilledWorker
         from distributed.client import FutureCancelledError
         from distributed.comm.core import CommClosedError
@@ -75,8 +80,11 @@ class DaskEngine:
                 f"part {part.number} ended every worker that tried it; is there enough memory?"
             ) from killed
         except (FutureCancelledError, CommClosedError) as lost:
-            await self.end()
+            if self._client is client:  # else another part has connected anew
+                await self.end()
             raise WorkerLost(f"the scheduler at {self._address} is gone") from lost
+        except PartFailed:
+            raise
         except ModuleNotFoundError as missing:
             raise PartFailed(
                 f"a worker of {self._address} lacks a package: {missing}; install vssea there"
@@ -118,7 +126,7 @@ class DaskEngine:
                     self._client = await client
                 except (OSError, TimeoutError) as error:
                     await client.close()
-                    raise PartFailed(
+                    raise OutOfReach(
                         f"no Dask scheduler answers at {self._address}; start one with `dask scheduler`, "
                         "or give the address of one that runs"
                     ) from error

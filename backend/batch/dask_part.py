@@ -19,9 +19,10 @@ _under_way: set[int] = set()
 
 
 def compute(part: PartTask) -> PartFiles | None:
-    """Return a part's files, None as soon as the scheduler wants it no longer."""
-    plan = _plan_of(part.document)
+    """Return a part's files, None as soon as the scheduler wants it no longer. Raises PartRefused for another version."""
     worker = get_worker()
+    part.check_version(f"the worker {worker.address}", "install the same")
+    plan = _plan_of(part.document)
     key = worker.get_current_task()
 
     def goes_on(done: int) -> bool:

@@ -1,17 +1,30 @@
 """What computes the parts of a batch: this machine's processes or a cluster's, behind one protocol."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
+
+from backend.batch.version import model_version
 
 
 @dataclass(frozen=True)
 class PartTask:
-    """Runs `first` to `first + count` of the batch whose document this is (JSON); `number` is the part's place."""
+    """Runs `first` to `first + count` of the batch whose document this is (JSON); `number` is the part's place.
+
+    `version` is that of the model of whoever asks; a worker of another one refuses.
+    """
 
     document: str
     number: int
     first: int
     count: int
+    version: str = field(default_factory=model_version)
+
+    def check_version(self, worker: str, remedy: str) -> None:
+        """Raise PartRefused if `worker`, which is this process, has another version of the model."""
+        if self.version != model_version():
+            raise PartRefused(
+                f"{worker} runs version {model_version()} of the model, whoever asks runs {self.version}; {remedy}"
+            )
 
 
 @dataclass(frozen=True)
@@ -27,23 +40,38 @@ class PartFailed(RuntimeError):
     """A part could not be computed; the text says why. Tried again, it may fail again."""
 
 
+class PartRefused(PartFailed):
+    """A part that would fail however often it is tried."""
+
+
+class OutOfReach(PartFailed):
+    """What computes is not to be had now."""
+
+
 class WorkerLost(RuntimeError):
     """The worker of a part is gone; another one computes the same bits."""
 
 
 class Engine(Protocol):
-    """Computes parts, up to `workers` of them at a time."""
+    """Computes parts, `threads` of them at the same time."""
 
     @property
     def name(self) -> str:
         """Where it computes, in words."""
 
     @property
-    def workers(self) -> int:
-        """How many parts may be under way now."""
+    def threads(self) -> int:
+        """How many parts are computed at the same time, 1 if that is not known."""
+
+    @property
+    def at_a_time(self) -> int:
+        """How many parts may be given out now: at least `threads`."""
+
+    async def connect(self) -> None:
+        """Make `threads` known. Raises OutOfReach."""
 
     async def run(self, part: PartTask) -> PartFiles:
-        """Return a computed part. Raises PartFailed, WorkerLost; a cancelled part ends early, within 0.2 s."""
+        """Return a computed part. Raises PartFailed or one of its kinds, WorkerLost; a cancelled part ends early, within 0.2 s."""
 
     def process_ids(self) -> list[int]:
         """Return the numbers of its processes on this machine."""

@@ -1,13 +1,25 @@
-"""The files of one batch: its document, and two files a part at most. A file that is there is whole."""
+"""The files of one batch: its document, how it is divided, and two files a part at most. A file that is there is whole."""
 
+import json
 import os
+import re
 import shutil
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from backend.batch.engine import PartFiles
 
-DOCUMENT, ROWS, TRAJECTORIES = "batch.json", "part", "trajectories"
-UNFINISHED = ".new"
+DOCUMENT, DIVISION, ROWS, TRAJECTORIES = "batch.json", "parts.json", "part", "trajectories"
+UNFINISHED, DAMAGED = ".new", ".damaged"
+PART = re.compile(rf"{ROWS}-(\d{{5,}})\.parquet")
+
+
+@dataclass(frozen=True)
+class Division:
+    """What all parts of a batch have in common: the runs of each but the last one, and the version that computes them."""
+
+    part_size: int
+    version: str
 
 
 class BatchFolder:
@@ -16,10 +28,27 @@ class BatchFolder:
     def __init__(self, path: Path) -> None:
         self.path = path
 
-    def create(self, document: str) -> None:
-        """Make the folder with the batch's document in it. Raises OSError."""
+    def create(self, document: str, division: Division) -> None:
+        """Make the folder with the batch's document in it, and how it is divided. Raises OSError."""
         self.path.mkdir(parents=True)
+        self._write(DIVISION, json.dumps(asdict(division)).encode())
         self._write(DOCUMENT, document.encode())
+
+    def division(self) -> Division | None:
+        """Return how it is divided, None if that is not told. Raises OSError."""
+        try:
+            told = json.loads((self.path / DIVISION).read_bytes())
+            return Division(int(told["part_size"]), str(told["version"]))
+        except (FileNotFoundError, ValueError, KeyError, TypeError):
+            return None
+
+    def begin_anew(self, division: Division) -> None:
+        """Remove all parts, so that only those of another division are kept from now on. Raises OSError."""
+        for number in self.parts():
+            self.rows_of(number).unlink()
+        for path in self.path.glob(f"{TRAJECTORIES}-*.parquet"):
+            path.unlink()
+        self._write(DIVISION, json.dumps(asdict(division)).encode())
 
     @property
     def document_path(self) -> Path:
@@ -39,15 +68,26 @@ class BatchFolder:
 
     def parts(self) -> list[int]:
         """Return the numbers of the parts that are there, in order."""
-        return _numbers(self.path, ROWS)
+        found = (PART.fullmatch(path.name) for path in self.path.iterdir())
+        return sorted(int(match[1]) for match in found if match)
+
+    def put_aside(self, number: int) -> None:
+        """Let a part be missing whose files cannot be read; they stay under another name. Raises OSError."""
+        for name in (_name(ROWS, number), _name(TRAJECTORIES, number)):
+            if (self.path / name).exists():
+                (self.path / name).replace(self.path / f"{name}{DAMAGED}")
 
     def rows_of(self, number: int) -> Path:
         """Return where the rows of a part are."""
         return self.path / _name(ROWS, number)
 
+    def trajectories_of(self, number: int) -> Path:
+        """Return where the samples of a part are, if any are kept."""
+        return self.path / _name(TRAJECTORIES, number)
+
     def trajectories(self) -> list[Path]:
         """Return the files of samples of the parts that are there, in order."""
-        paths = [self.path / _name(TRAJECTORIES, number) for number in self.parts()]
+        paths = [self.trajectories_of(number) for number in self.parts()]
         return [path for path in paths if path.exists()]
 
     def size(self) -> int:
@@ -70,10 +110,6 @@ class BatchFolder:
 
 def _name(kind: str, number: int) -> str:
     return f"{kind}-{number:05d}.parquet"
-
-
-def _numbers(folder: Path, kind: str) -> list[int]:
-    return sorted(int(path.stem.removeprefix(f"{kind}-")) for path in folder.glob(f"{kind}-*.parquet"))
 
 
 def _sync_folder(folder: Path) -> None:

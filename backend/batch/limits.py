@@ -3,9 +3,10 @@
 import math
 from dataclasses import dataclass
 
-from backend.problem import FieldError, Problem, refused
+from backend.problem import Problem, refused
 from backend.settings import Settings
 from vssea_core.batch.document import Batch, count_of
+from vssea_core.field_errors import FieldError
 
 
 class TooLarge(RuntimeError):

@@ -3,10 +3,10 @@
 from typing import Any
 
 from backend.batch.catalogue import Row
-from backend.batch.progress import STATES, Progress
+from backend.batch.progress import STATES, RunCounts
 
 
-def listed(row: Row, progress: Progress | None = None) -> dict[str, Any]:
+def listed(row: Row, progress: RunCounts | None = None) -> dict[str, Any]:
     """Return the document of docs/protocol.md; `progress` is that of a batch that runs."""
     found = row.summary
     return {
@@ -19,7 +19,7 @@ def listed(row: Row, progress: Progress | None = None) -> dict[str, Any]:
 
 
 def _kept(row: Row) -> dict[str, Any]:
-    """Return what Progress.document does, of a batch that does not run."""
+    """Return what RunCounts.document does, of a batch that does not run."""
     counts = row.summary.get("counts", dict.fromkeys(STATES, 0))
     done = sum(counts.values())
     return {

@@ -2,7 +2,7 @@
 
 import asyncio
 
-from backend.batch.engine import PartFailed, PartFiles, PartTask, WorkerLost
+from backend.batch.engine import PartFailed, PartFiles, PartRefused, PartTask, WorkerLost
 from backend.compute.pool import JobCancelledError, JobFailedError, JobRefusedError, Worker, WorkerLostError
 
 JOBS = "backend.batch.part_jobs"
@@ -19,7 +19,7 @@ class LocalEngine:
     """Computes parts in `workers` processes, each started when it is first needed."""
 
     def __init__(self, workers: int, idle_s: float = IDLE_S) -> None:
-        self.workers = workers
+        self.threads = self.at_a_time = workers
         self.name = f"this machine, {workers} worker{'' if workers == 1 else 's'}"
         self._all = [Worker(f"vssea batch {number}", "", NICENESS, jobs=JOBS) for number in range(1, workers + 1)]
         self._turns = asyncio.LifoQueue[Worker]()  # the one that is warm goes first
@@ -28,6 +28,9 @@ class LocalEngine:
         self._warm: dict[Worker, int | None] = {}
         self._idle_s = idle_s
         self._idle: asyncio.Task[None] | None = None
+
+    async def connect(self) -> None:
+        """Do nothing: processes start with the first part."""
 
     async def run(self, part: PartTask) -> PartFiles:
         """Return a computed part. Raises PartFailed, WorkerLost; cancelled, the part ends within 0.2 s."""
@@ -45,7 +48,7 @@ class LocalEngine:
             raise
         finally:
             self._turns.put_nowait(worker)
-            if self._turns.qsize() == self.workers:
+            if self._turns.qsize() == len(self._all):
                 self._idle = asyncio.create_task(self._end_idle())
 
     def process_ids(self) -> list[int]:
@@ -66,7 +69,9 @@ class LocalEngine:
             files: PartFiles = await worker.run("compute_part", part, time_limit_s=PART_LIMIT_S)
         except WorkerLostError as lost:
             raise WorkerLost(str(lost)) from lost
-        except (JobRefusedError, JobFailedError, JobCancelledError) as failure:
+        except JobRefusedError as refusal:
+            raise PartRefused(str(refusal)) from refusal
+        except (JobFailedError, JobCancelledError) as failure:
             raise PartFailed(str(failure)) from failure
         return files
 

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 from filelock import FileLock
 
-from backend.batch.engine import PartFiles, PartTask
+from backend.batch.engine import PartFiles, PartRefused, PartTask
 from backend.batch.part_files import part_files
 from backend.compute.worker import Progress
 from vssea_core.batch.document import Batch, Listed
@@ -39,7 +39,11 @@ def warm_up() -> None:
 
 
 def compute_part(task: PartTask, progress: Progress) -> PartFiles | None:
-    """Return the files of a part; the job ends early when its end is asked for."""
+    """Return the files of a part; the job ends early when its end is asked for. Raises ValueError."""
+    try:
+        task.check_version("a worker that was started later", "start the program anew")
+    except PartRefused as refusal:
+        raise ValueError(str(refusal)) from refusal
     gc.disable()  # collections over the scenarios of thousands of runs would take a third of the time
     try:
         part = run_part(plan_of(task.document), task.first, task.count, lambda done: progress(done / task.count))

@@ -8,7 +8,7 @@ from typing import Any
 STATES = ("done", "ended", "refused")
 
 
-class Progress:
+class RunCounts:
     """Counts the runs of one batch as its parts come in."""
 
     def __init__(
@@ -18,11 +18,11 @@ class Progress:
         kept: dict[str, int],
         kept_parts: int,
         clock: Callable[[], float] = time.monotonic,
-        workers: int = 1,
+        threads: int = 1,
     ) -> None:
         self.runs, self.parts, self.parts_done = runs, parts, kept_parts
         self.counts = Counter(dict.fromkeys(STATES, 0) | kept)
-        self._clock, self._warm_at = clock, kept_parts + max(1, workers)
+        self._clock, self._warm_at = clock, kept_parts + max(1, threads)
         self._since_s, self._latest_s, self._new = clock(), clock(), 0
         self._first_rate: float | None = None
 
@@ -42,7 +42,7 @@ class Progress:
         self.parts_done += 1
         self._latest_s, self._new = self._clock(), self._new + sum(counts.values())
         if self.parts_done == self._warm_at and self.parts_done < self.parts:
-            # The first part of each worker waits for its start, and says little of the others.
+            # The first part of each thread waits for its start, and says little of the others.
             self._first_rate = self._rate()
             self._since_s, self._new = self._latest_s, 0
 

@@ -5,6 +5,7 @@ import math
 import tempfile
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -25,11 +26,17 @@ MEDIA_TYPES = {
 
 
 def counts(folder: str) -> dict[str, int]:
-    """Return how many runs there are by state, in the parts that are there."""
+    """Return how many runs there are by state, in the parts that are there and can be read."""
     found = Counter[str]()
-    for table in _tables(_rows_in(folder), ["state"]):
-        found.update(table["state"].to_pylist())
+    for part in counts_by_part(folder).values():
+        found.update(part or {})
     return dict(found)
+
+
+def counts_by_part(folder: str) -> dict[int, dict[str, int] | None]:
+    """Return the runs by state of each part that is there, None for one that cannot be read."""
+    batch = BatchFolder(Path(folder))
+    return {number: _counts(batch, number) for number in batch.parts()}
 
 
 def page(folder: str, offset: int, limit: int, columns: list[str] | None) -> bytes:
@@ -52,7 +59,8 @@ def row(folder: str, run: int, part: int) -> dict[str, Any] | None:
     path = BatchFolder(Path(folder)).rows_of(part)
     if not path.exists():
         return None
-    table = pq.read_table(path, filters=[("run", "=", run)])
+    with _told(path):
+        table = pq.read_table(path, filters=[("run", "=", run)])
     return dict(zip(table.column_names, _listed(table)[0], strict=True))
 
 
@@ -67,7 +75,9 @@ def export(folder: str, what: str, form: str, target: str) -> tuple[str, str]:
     with tempfile.NamedTemporaryFile(dir=target, suffix=f".{form}", delete=False) as file:
         written = Path(file.name)
     try:
-        _write(form, pq.read_schema(paths[0]), _tables(paths, None), str(written))
+        with _told(paths[0]):
+            schema = pq.read_schema(paths[0])
+        _write(form, schema, _tables(paths), str(written))
     except BaseException:
         written.unlink(missing_ok=True)
         raise
@@ -79,23 +89,49 @@ def _rows_in(folder: str) -> list[Path]:
     return [batch.rows_of(number) for number in batch.parts()]
 
 
+def _counts(batch: BatchFolder, number: int) -> dict[str, int] | None:
+    samples = batch.trajectories_of(number)
+    try:
+        if samples.exists():
+            pq.read_metadata(samples)
+        return dict(Counter(pq.read_table(batch.rows_of(number), columns=["state"])["state"].to_pylist()))
+    except (pa.ArrowException, OSError, KeyError):
+        return None
+
+
 @lru_cache(100_000)
 def _count(path: Path) -> int:
-    """Return how many rows a part has; a part that is there never changes."""
-    return int(pq.read_metadata(path).num_rows)
+    """Return how many rows a part has; computed anew, it has as many."""
+    with _told(path):
+        return int(pq.read_metadata(path).num_rows)
 
 
-def _tables(paths: Iterable[Path], columns: list[str] | None) -> Iterator[pa.Table]:
+def _tables(paths: Iterable[Path]) -> Iterator[pa.Table]:
     for path in paths:
-        yield pq.read_table(path, columns=columns)
+        with _told(path):
+            table = pq.read_table(path)
+        yield table
 
 
 def _read(path: Path, columns: list[str] | None) -> pa.Table:
-    known = pq.read_schema(path).names
+    with _told(path):
+        known = pq.read_schema(path).names
     unknown = [name for name in columns or () if name not in known]
     if unknown:
         raise ValueError(f"there is no column {unknown[0]!r}; known here: {', '.join(known)}")
-    return pq.read_table(path, columns=columns)
+    with _told(path):
+        return pq.read_table(path, columns=columns)
+
+
+@contextmanager
+def _told(path: Path) -> Iterator[None]:
+    """Say which file it is that cannot be read. Raises ValueError."""
+    try:
+        yield
+    except (pa.ArrowException, OSError) as error:
+        raise ValueError(
+            f"the file {path.name} of this batch's results is damaged; resume the batch, and this part is computed again"
+        ) from error
 
 
 def _listed(table: pa.Table) -> list[tuple[Any, ...]]:

@@ -2,28 +2,25 @@
 
 import asyncio
 import logging
-import time
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Any
 
 from backend.batch.catalogue import Row
 from backend.batch.engine import Engine, PartFailed, PartFiles, PartTask
-from backend.batch.folder import BatchFolder
+from backend.batch.folder import BatchFolder, Division
 from backend.batch.limits import Limits, TooLarge
 from backend.batch.listed import listed
 from backend.batch.part_run import parts_of, run_parts
-from backend.batch.progress import Progress
-from backend.compute.pool import JobFailedError, JobRefusedError
+from backend.batch.progress import RunCounts
+from backend.batch.times import Times
+from backend.batch.version import model_version
+from backend.compute.pool import JobFailedError, JobRefusedError, Jobs
 
 logger = logging.getLogger(__name__)
-
-
-class Results(Protocol):
-    """Where results are read: a worker process."""
-
-    async def run(self, job: str, *arguments: Any, time_limit_s: float = 60.0) -> Any:
-        """Return what the job returns."""
+READ_LIMIT_S = 900.0
+ANEW = "computed from its start: the parts that were kept are of another version of the model"
 
 
 class Running:
@@ -34,18 +31,18 @@ class Running:
         row: Row,
         folder: BatchFolder,
         engine: Engine,
-        results: Results,
+        results: Jobs,
         limits: Limits,
         changed: Callable[[], None],
-        clock: Callable[[], float] = time.monotonic,
+        times: Times,
     ) -> None:
         self.row, self._folder, self._engine, self._results = row, folder, engine, results
-        self._limits, self._changed, self._clock = limits, changed, clock
-        self._begun_s = clock()
+        self._limits, self._changed, self._clock, self._sleep = limits, changed, times.clock, times.sleep
+        self._begun_s = times.clock()
         self._size = 0
         self._work: asyncio.Task[None] | None = None
         self._is_cancelled = False
-        self.progress = self._progress({}, 0)
+        self.progress = self._counted({}, 0)
         self.ended = asyncio.Event()
         """Set when what became of it is kept."""
 
@@ -80,17 +77,43 @@ class Running:
             await asyncio.wait({self._work})
             raise
         state, reason = self._outcome(self._work)
-        return replace(self.so_far(), state=state, reason=reason)
+        return replace(self.so_far(), state=state, reason=reason or self.row.reason)
 
     async def _compute(self) -> None:
         document = await asyncio.to_thread(self._folder.document)
-        there = set(await asyncio.to_thread(self._folder.parts))
-        if there:
-            counts = await self._results.run("counts", str(self._folder.path))
+        parts = parts_of(document, self.row.runs, self.row.part_size)
+        kept = await self._kept()
+        missing = [part for part in parts if part.number not in kept]
+        if missing and not await self._is_of_this_version(len(kept)):
+            kept, missing = {}, parts
+        if kept:
             self._size = await asyncio.to_thread(self._folder.size)
-            self.progress = self._progress(counts, len(there))
-        missing = [part for part in parts_of(document, self.row.runs, self.row.part_size) if part.number not in there]
-        await run_parts(self._engine, missing, self._keep)
+            self.progress = self._counted(dict(sum(map(Counter, kept.values()), Counter[str]())), len(kept))
+        await run_parts(self._engine, missing, self._keep, self._sleep)
+
+    async def _kept(self) -> dict[int, dict[str, int]]:
+        """Return the runs by state of each part that is there; one that cannot be read is put aside, as if it were missing."""
+        if not await asyncio.to_thread(self._folder.parts):
+            return {}
+        path = str(self._folder.path)
+        found = await self._results.run("counts_by_part", path, time_limit_s=READ_LIMIT_S)
+        for number in [number for number, counts in found.items() if counts is None]:
+            await asyncio.to_thread(self._folder.put_aside, number)
+            logger.warning("batch %s: part %d cannot be read and is computed again", self.row.id, number)
+        return {number: counts for number, counts in found.items() if counts is not None and number < self.row.parts}
+
+    async def _is_of_this_version(self, kept: int) -> bool:
+        """Return whether parts that come now belong to the `kept` ones; else these are removed."""
+        division = Division(self.row.part_size, model_version())
+        if await asyncio.to_thread(self._folder.division) == division:
+            return True
+        await asyncio.to_thread(self._folder.begin_anew, division)
+        if kept:
+            logger.warning(
+                "batch %s is computed from its start: its %d parts are of another version", self.row.id, kept
+            )
+            self.row = replace(self.row, reason=ANEW)
+        return False
 
     async def _keep(self, part: PartTask, files: PartFiles) -> None:
         self._size += await asyncio.to_thread(self._folder.keep, part.number, files)
@@ -98,8 +121,8 @@ class Running:
         self._changed()
         self._limits.check_kept(self._size)
 
-    def _progress(self, counts: dict[str, int], parts: int) -> Progress:
-        return Progress(self.row.runs, self.row.parts, counts, parts, self._clock, self._engine.workers)
+    def _counted(self, counts: dict[str, int], parts: int) -> RunCounts:
+        return RunCounts(self.row.runs, self.row.parts, counts, parts, self._clock, self._engine.threads)
 
     def _outcome(self, work: asyncio.Task[None]) -> tuple[str, str]:
         if work.cancelled():

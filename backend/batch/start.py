@@ -9,6 +9,7 @@ from backend.batch.catalogue import BatchCatalogue
 from backend.batch.engine import Engine
 from backend.batch.limits import Limits
 from backend.batch.local_engine import LocalEngine
+from backend.batch.version import model_version
 from backend.compute.pool import Worker
 from backend.settings import Settings
 from backend.store.database import Database
@@ -20,6 +21,7 @@ class ServedBatches(Batches):
     """Batches with the processes that plan them and read their results."""
 
     def __init__(self, settings: Settings, database: Database) -> None:
+        model_version()  # of the sources that this server has started with
         self._planner = Worker("vssea batches", "", PLANS_NICENESS, jobs="backend.batch.jobs")
         self._reader = Worker("vssea results", "", RESULTS_NICENESS, jobs="backend.batch.result_jobs")
         catalogue, folder = BatchCatalogue(database), settings.batches_folder

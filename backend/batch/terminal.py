@@ -7,11 +7,11 @@ from datetime import timedelta
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
-from backend.batch.progress import Progress as Runs
+from backend.batch.progress import RunCounts
 
 
 @contextmanager
-def shown(runs: Runs) -> Iterator[Callable[[], None]]:
+def shown(runs: RunCounts) -> Iterator[Callable[[], None]]:
     """Give what shows a batch's progress anew, on the error stream; the bar is gone at the end."""
     columns = BarColumn(), TaskProgressColumn(), TextColumn("{task.description}")
     console = Console(stderr=True)
@@ -20,7 +20,7 @@ def shown(runs: Runs) -> Iterator[Callable[[], None]]:
         yield lambda: bar.update(task, completed=runs.done, description=words(runs))
 
 
-def words(runs: Runs) -> str:
+def words(runs: RunCounts) -> str:
     """Return how far a batch is: runs, those that ended early or were refused, rate, time left."""
     told = [f"{runs.done:,} of {runs.runs:,} runs"]
     told += [f"{runs.counts[state]:,} {state}" for state in ("ended", "refused") if runs.counts[state]]

@@ -77,6 +77,10 @@ class Batches:
         """End a batch; the parts that are done stay."""
         return self._json("POST", f"{_of(batch)}/cancel", {})
 
+    def resume(self, batch: str) -> Document:
+        """Let a batch that failed or was cancelled go on with the parts that are missing."""
+        return self._json("POST", f"{_of(batch)}/resume", {})
+
     def delete(self, batch: str) -> None:
         """Delete a batch that does not run, with its results."""
         self._connection.json("DELETE", f"/api/batches{_of(batch)}")

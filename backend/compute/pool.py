@@ -6,7 +6,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
-from typing import Any
+from typing import Any, Protocol
 
 from backend.processes import CONTEXT, started
 
@@ -32,6 +32,13 @@ class JobCancelledError(RuntimeError):
 
 
 Hearer = Callable[[float, str], None]
+
+
+class Jobs(Protocol):
+    """Whoever answers jobs, as a worker does."""
+
+    async def run(self, job: str, *arguments: Any, time_limit_s: float = 60.0) -> Any:
+        """Return what the job returns. Raises JobRefusedError, JobFailedError."""
 
 
 class Worker:

@@ -10,7 +10,8 @@ from backend.differences import Difference, told, value_at
 from backend.presets.documents import Documents
 from backend.presets.fitting import fitted
 from backend.presets.found import Found
-from backend.problem import FieldError, Problem, refused
+from backend.problem import Problem, refused
+from vssea_core.field_errors import FieldError
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,13 @@ from backend.presets.contents import Note, PresetName, Tags
 from backend.presets.documents import Documents
 from backend.presets.fitting import Fit, fitted
 from backend.presets.found import Found
-from backend.problem import FieldError, from_validation, refused
+from backend.problem import from_validation, refused
 from backend.store import listing, versioned
 from backend.store.document import Document, Edit, Version
 from backend.store.expected import ANY
 from backend.store.versioned import now
 from vssea_core import __version__
+from vssea_core.field_errors import FieldError, sentence_of
 
 SCHEMA = 1
 """Counted when the form of the file changes; fields of the content may come and go without it."""
@@ -114,10 +115,7 @@ def keep(documents: Documents, incoming: list[Incoming], by: str) -> list[Found]
         for error in fit.refused
     ]
     if errors:
-        more = f" ({len(errors) - 1} more)" if len(errors) > 1 else ""
-        raise refused(
-            f"{errors[0].field} does not fit, {errors[0].message.rstrip('.')}{more}. Nothing was imported.", *errors
-        )
+        raise refused(f"What does not fit: {sentence_of(errors)}. Nothing was imported.", *errors)
     kept = documents.changed(lambda connection: _kept(documents, connection, incoming, by), ANY)
     return [Found(documents.kind, document, document.newest).read() for document in kept]
 

@@ -6,8 +6,9 @@ from typing import Any, Generic, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from backend.problem import FieldError, from_validation
+from backend.problem import from_validation
 from vssea_core.changes import models_of
+from vssea_core.field_errors import FieldError
 
 Model = TypeVar("Model", bound=BaseModel)
 

@@ -7,6 +7,7 @@ from pydantic import ValidationError
 
 from backend.recordings.layout import CHANGES, COMMANDS, EVENTS, SCENARIO
 from backend.recordings.reader import SAME_INSTANT_S, Recording
+from vssea_core.field_errors import field_errors, sentence_of
 from vssea_core.scenario import Scenario
 
 Document = dict[str, Any]
@@ -40,10 +41,8 @@ def validated(document: Document, whose: str) -> Scenario:
     try:
         return Scenario.model_validate_json(json.dumps(document))
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        place = ".".join(map(str, first["loc"])) or "as a whole"
-        words = first["msg"].removeprefix("Value error, ")
-        raise ValueError(f"the scenario of {whose} does not fit this version: {place}: {words}") from error
+        words = sentence_of(field_errors(error, Scenario))
+        raise ValueError(f"the scenario of {whose} does not fit this version: {words}") from error
 
 
 def name_of(recording: Recording) -> str:

@@ -7,8 +7,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from backend.differences import differences as differences
 from backend.differences import value_at
-from backend.problem import FieldError, Problem, from_validation, refused
+from backend.problem import Problem, from_validation, refused
 from vssea_core.changes import UnknownPath, set_values
+from vssea_core.field_errors import FieldError
 from vssea_core.scenario import Scenario
 
 CONSEQUENCE = "Nothing was changed."

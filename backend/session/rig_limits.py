@@ -1,7 +1,8 @@
 """What may be asked of a rig: stiffness, disturbances, jogs and moves within its limits. Raises Problem, never clamps."""
 
-from backend.problem import FieldError, Problem, refused
+from backend.problem import Problem, refused
 from backend.rigs.rig_file import Limits, RigFile
+from vssea_core.field_errors import FieldError
 from vssea_core.scenario import Scenario
 from vssea_core.signals.disturbance_documents import Disturbance
 from vssea_core.signals.documents import Disturbances, StiffnessReference

@@ -21,7 +21,7 @@ from backend.batch.beside_output import BesideOutput
 from backend.batch.dask_engine import DaskEngine
 from backend.batch.engine import PartFailed, PartFiles, PartTask
 from backend.batch.part_files import part_files
-from backend.batch.progress import Progress
+from backend.batch.progress import RunCounts
 from backend.batch.terminal import words
 from backend.cli import app
 from tests.backend.server import free_port
@@ -48,7 +48,7 @@ READ = {
 class Here:
     """An engine in this process; `before` is called with the number of each part."""
 
-    name, workers = "here", 1
+    name, threads, at_a_time = "here", 1, 1
 
     def __init__(self, workers: int) -> None:
         self.computed: list[int] = []
@@ -364,7 +364,7 @@ def test_a_cluster_gives_the_same_table(file: Path, cluster: LocalCluster) -> No
 
 def test_the_bar_says_how_fast_it_is_and_how_long_it_will_take() -> None:
     times = iter([0.0, 4.0, 4.0, 4.0, 4.0, 4.0])
-    progress = Progress(10_000, 5, {}, 0, lambda: next(times))
+    progress = RunCounts(10_000, 5, {}, 0, lambda: next(times))
     assert words(progress) == "0 of 10,000 runs, starting"
     progress.add({"done": 1990, "ended": 8, "refused": 2})
     assert words(progress) == "2,000 of 10,000 runs, 8 ended, 2 refused, 500 runs/s, 0:00:16 left"

@@ -4,6 +4,7 @@ import asyncio
 import io
 import sys
 from collections.abc import Callable, Coroutine
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -13,7 +14,7 @@ import pytest
 from pydantic import ValidationError
 from typer.testing import CliRunner
 
-from backend.batch.engine import PartFailed, PartFiles, PartTask
+from backend.batch.engine import PartFailed, PartFiles, PartRefused, PartTask
 from backend.batch.local_engine import LocalEngine
 from backend.batch.part_files import part_files
 from backend.batch.sizes import MOST_RUNS, PART_BYTES, part_size
@@ -78,6 +79,11 @@ def test_a_part_that_makes_no_sense_fails_with_its_reason() -> None:
         with_engine(lambda engine: engine.run(PartTask(wrong, 0, 0, 3)))
 
 
+def test_a_worker_that_was_started_from_other_sources_refuses_its_part() -> None:
+    with pytest.raises(PartRefused, match="whoever asks runs another; start the program anew"):
+        with_engine(lambda engine: engine.run(replace(FEW, version="another")))
+
+
 def test_workers_start_when_they_are_needed_and_end_when_they_are_idle() -> None:
     async def work(engine: LocalEngine) -> list[int]:
         pool = Pool()
@@ -133,4 +139,4 @@ def test_the_address_of_a_cluster_is_checked_and_this_machine_is_the_default() -
     with pytest.raises(ValidationError, match="is no address of a Dask scheduler; expected such as tcp://"):
         Settings(batch_engine="localhost")
     engine = engine_for(Settings(batch_workers=3))
-    assert (engine.name, engine.workers) == ("this machine, 3 workers", 3)
+    assert (engine.name, engine.threads, engine.at_a_time) == ("this machine, 3 workers", 3, 3)

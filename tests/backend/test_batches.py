@@ -180,7 +180,7 @@ def test_refused_runs_are_listed_with_their_reason(http_batches: httpx.Client) -
     page = http_batches.get(f"{BATCHES}/{found['id']}/results").json()
     row = dict(zip(page["columns"], page["rows"][1], strict=True))
     assert (row["state"], row["rms_error"]) == ("refused", None)
-    assert "greater than" in row["reason"]
+    assert "expected a number from 0.005 to 5 kg" in row["reason"]
     detail = problem_of(http_batches.get(f"{BATCHES}/{found['id']}/runs/1/scenario"), 422)["detail"]
     assert row["reason"].lower() in detail.lower()
 
@@ -246,3 +246,5 @@ def test_a_cancelled_batch_keeps_its_parts_and_may_then_be_deleted(http_batches:
     ]
     assert http_batches.delete(place).json() == {}
     assert http_batches.get(place).status_code == 404
+    assert http_batches.post(f"{BATCHES}/{waiting['id']}/resume").json()["id"] == waiting["id"]
+    assert ended(http_batches, waiting["id"])["counts"]["done"] == 3

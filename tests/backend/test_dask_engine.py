@@ -5,6 +5,7 @@ import io
 import os
 import signal
 from collections.abc import AsyncIterator
+from dataclasses import replace
 from typing import Any
 
 import pyarrow.parquet as pq
@@ -12,7 +13,8 @@ import pytest
 from distributed import LocalCluster
 
 from backend.batch.dask_engine import DaskEngine
-from backend.batch.engine import PartFailed, PartFiles, PartTask
+from backend.batch.engine import PartFailed, PartFiles, PartRefused, PartTask
+from backend.batch.version import model_version
 from tests.backend.server import free_port
 from vssea_core.actuator.parameters import Sensors
 from vssea_core.batch.document import Batch, Draw, Keep, Sample, Uniform
@@ -62,8 +64,19 @@ async def test_parts_have_the_same_bits_as_here(cluster: LocalCluster) -> None:
             parts = await asyncio.gather(*map(engine.run, PARTS))
         assert [tables(files) for files in parts] == [computed_here(part) for part in PARTS]
         assert [files.counts for files in parts] == [{"done": 8}] * 12
-        assert engine.workers == 4
+        assert (engine.threads, engine.at_a_time) == (2, 4)
         assert engine.name == f"Dask at {cluster.scheduler_address}, 2 threads"
+    finally:
+        await engine.end()
+
+
+async def test_a_worker_of_another_version_refuses_its_part(cluster: LocalCluster) -> None:
+    engine = DaskEngine(cluster.scheduler_address)
+    words = rf"the worker tcp://\S+ runs version {model_version()} of the model, whoever asks runs another; install the same"
+    try:
+        async with asyncio.timeout(LIMIT_S):
+            with pytest.raises(PartRefused, match=words):
+                await engine.run(replace(PARTS[0], version="another"))
     finally:
         await engine.end()
 
@@ -78,6 +91,17 @@ async def test_a_worker_that_is_killed_midway_changes_no_bit(cluster: LocalClust
             os.kill(next(worker.pid for name, worker in cluster.workers.items() if name in busy), signal.SIGKILL)
             parts = await asyncio.gather(*under_way)
         assert [tables(files) for files in parts] == [computed_here(part) for part in PARTS]
+    finally:
+        await engine.end()
+
+
+async def test_once_connected_it_knows_its_threads_before_the_first_part(cluster: LocalCluster) -> None:
+    engine = DaskEngine(cluster.scheduler_address)
+    try:
+        assert (engine.threads, engine.at_a_time) == (1, 1)
+        async with asyncio.timeout(LIMIT_S):
+            await engine.connect()
+        assert (engine.threads, engine.at_a_time) == (2, 4)
     finally:
         await engine.end()
 

@@ -1,12 +1,13 @@
 """The view Batch in a real browser against a real server: defined, watched, read, a run of it looked at and loaded."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from tests.backend.server import Server, until
 from tests.browser.waiting import wait_until
@@ -77,6 +78,9 @@ def batch_view(page: Page, batch: str = "") -> None:
 
 
 def vary(page: Page, words: str, path: str) -> None:
+    fold = page.get_by_role("button", name="New batch")
+    if fold.get_attribute("aria-expanded") == "false":
+        fold.click()
     page.get_by_label("Field to vary").fill(words)
     page.locator(f".field-options [data-path='{path}']").click()
     expect(page.locator(f".variation[data-path='{path}']")).to_be_visible()
@@ -101,6 +105,7 @@ def test_two_chosen_fields_are_estimated_started_watched_and_drawn(
     page.get_by_label("Name of the batch").fill("my map")
     page.get_by_role("button", name="Start").click()
     own = page.locator(".batch", has_text="my map")
+    expect(own.locator(".batch-title")).to_be_focused()
     expect(own.locator(".task-state")).to_have_text("done", timeout=60_000)
     expect(page.locator(".batch-head")).to_contain_text("16 runs: 16 done.")
     wait_until(page, f"() => ({COLOURS})() > 20")
@@ -252,6 +257,163 @@ def test_a_batch_under_way_is_cancelled_and_deleted(running: Server, open_page: 
     own.get_by_role("button", name="Delete").click()
     page.locator(".ask-dialog").get_by_role("button", name="Delete").click()
     expect(own).to_have_count(0)
+    expect(page.locator(".batch-title:focus")).to_have_count(1)
+
+
+@contextmanager
+def altered(server: Server, page: Page, batch: str, rows: int, **facts: Any) -> Iterator[None]:
+    """Let a page see a batch with other facts, and only the first rows of its results."""
+    told = server.get(f"/api/batches/{batch}").json() | facts
+    page.route(f"**/api/batches/{batch}", lambda route: route.fulfill(json=told))
+    page.route("**/api/batches?*", lambda route: route.fulfill(json={"total": 1, "batches": [told]}))
+
+    def few(route: Route) -> None:
+        found = route.fetch().json()
+        route.fulfill(json=found | {"total": rows, "rows": found["rows"][:rows]})
+
+    page.route(f"**/api/batches/{batch}/results?*", few)
+    yield
+    page.unroute_all(behavior="ignoreErrors")
+
+
+def test_a_batch_without_a_result_says_that_it_prepares_and_for_how_long(
+    running: Server, open_page: OpenPage, mapped: str
+) -> None:
+    page = open_page(running)
+    nothing = {"done": 0, "runs": 30, "parts_done": 0, "parts": 1, "share": 0.0}
+    with altered(running, page, mapped, 0, state="running", progress=nothing, rate=None, seconds=7.2, ended_at=None):
+        batch_view(page, mapped)
+        expect(page.locator(".batch-state")).to_have_text("preparing · 7 s")
+        expect(page.locator(".batch .task-state")).to_have_text("preparing")
+        for bar in (page.locator(".batch progress"), page.locator(".batch-head progress")):
+            expect(bar).to_be_visible()
+            assert bar.get_attribute("value") is None
+        expect(page.locator("#batch-main .result-overlay")).to_contain_text("the first part is under way")
+        expect(page.locator("#batch-main .result-overlay")).to_contain_text("compiled")
+
+
+AXES = """() => {
+    const canvas = document.querySelector('.batch-canvas');
+    const { width, height } = canvas;
+    const context = canvas.getContext('2d');
+    const strips = [[0, 0, 50, height], [0, height - 44, 0.8 * width, 44]];
+    return strips.map((strip) => Array.from(context.getImageData(...strip).data).join()).join();
+}"""
+
+
+IS_DRAWN_ABOVE = """() => {
+    const canvas = document.querySelector('.batch-canvas');
+    return canvas.getContext('2d').getImageData(0.5 * canvas.width, 0.2 * canvas.height, 1, 1).data[3] > 0;
+}"""
+
+
+def test_the_axes_of_a_map_stay_as_they_are_while_results_come_in(
+    running: Server, open_page: OpenPage, mapped: str
+) -> None:
+    page = open_page(running)
+    batch_view(page, mapped)
+    wait_until(page, f"() => ({COLOURS})() > 20")
+    whole = page.evaluate(AXES)
+    assert page.evaluate(IS_DRAWN_ABOVE)
+    page.evaluate("location.hash = '#batch'")
+    expect(page.locator(".batch-results")).to_be_hidden()
+    with altered(running, page, mapped, 7):
+        page.locator(f".batch[data-id='{mapped}'] .batch-title").click()
+        wait_until(page, f"() => ({COLOURS})() > 3")
+        assert page.evaluate(AXES) == whole
+        assert not page.evaluate(IS_DRAWN_ABOVE), "more than the first runs are drawn"
+
+
+def test_the_page_knows_the_values_of_a_batch_before_it_runs(running: Server, open_page: OpenPage) -> None:
+    """Of every kind of variation, as the server computes them: a cell for each, from the first run on."""
+    scenario = nominal(running)
+    seeds = grid("seed", 0, 10, 4)
+    ratios = grid(LINK, 0.5, 2.0, 7) | {"spacing": "log", "factor": True}
+    listed = {"kind": "list", "path": BANDWIDTH, "values": [80.0, 40.0, 120.0]}
+    batch = computed(running, "of every kind", scenario, seeds, ratios, listed)
+    document = running.get(f"/api/batches/{batch}/document").json()
+    found = running.get(f"/api/batches/{batch}/results?limit=84&columns=seed,{LINK},{BANDWIDTH}").json()
+    page = open_page(running)
+    sizes = page.evaluate(
+        """async ([document, rows]) => {
+            const { variedValues } = await import('/app/batch/varied_values.js');
+            const { cellScale } = await import('/app/batch/cell_scales.js');
+            const known = [...variedValues(document, (path) => path === 'seed').values()];
+            const size = (values, varied) => cellScale(values, { varied, options: null, isLogarithmic: null }).size;
+            return known.flatMap((varied, i) => rows.map((row) => size([row[i]], varied)));
+        }""",
+        [document, found["rows"]],
+    )
+    assert sizes == [4] * 84 + [7] * 84 + [3] * 84
+
+
+def test_no_legend_of_a_run_is_cut(running: Server, open_page: OpenPage, mapped: str) -> None:
+    page = open_page(running)
+    batch_view(page, mapped)
+    wait_until(page, f"() => ({COLOURS})() > 20")
+    page.locator(".batch-canvas").focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("Enter")
+    expect(page.locator("#batch-run")).to_have_attribute("data-simulated", re.compile(r"\d+"))
+    legends = page.locator("#batch-run .legend")
+    expect(legends).to_have_count(3)
+    for width in (1920, 1366, 1280, 1100, 820, 420):
+        page.set_viewport_size({"width": width, "height": 768})
+        for legend in legends.all():
+            assert legend.evaluate("({ scrollWidth, clientWidth }) => scrollWidth <= clientWidth"), width
+
+
+def test_the_list_and_start_stay_in_sight_however_long_the_form_is(
+    running: Server, open_page: OpenPage, mapped: str
+) -> None:
+    page = open_page(running)
+    batch_view(page)
+    for words, path in (
+        ("link inertia", LINK),
+        ("observer bandwidth", BANDWIDTH),
+        ("softest", SOFTEST),
+        ("controller kind", "tuning.controller.kind"),
+    ):
+        vary(page, words, path)
+    for width, height in ((1366, 768), (820, 1180), (1920, 1080)):
+        page.set_viewport_size({"width": width, "height": height})
+        expect(page.get_by_role("button", name="Start")).to_be_in_viewport(ratio=1.0)
+        expect(page.locator(".batch-title").first).to_be_in_viewport(ratio=1.0)
+        assert page.evaluate(
+            """() => {
+                const edges = (words) => document.querySelector(words).getBoundingClientRect();
+                return edges('.batch-form .start').bottom <= edges('.batch-list-panel').top;
+            }"""
+        )
+    page.locator(f".batch[data-id='{mapped}'] .batch-title").click()
+    fold = page.get_by_role("button", name="New batch")
+    expect(fold).to_have_attribute("aria-expanded", "false")
+    expect(fold).to_contain_text("4 fields")
+    expect(page.locator(".batch-title[aria-current]")).to_be_in_viewport(ratio=1.0)
+    fold.click()
+    expect(page.locator(".variation")).to_have_count(4)
+
+
+def test_results_that_cannot_be_fetched_are_told_and_fetched_again(
+    running: Server, open_page: OpenPage, mapped: str
+) -> None:
+    page = open_page(running, tolerant=True)  # the browser itself logs the failure
+    problem = {"detail": "The disk does not answer. Try again."}
+    page.route("**/results?*", lambda route: route.fulfill(status=500, json=problem))
+    batch_view(page, mapped)
+    expect(page.locator(".batch-results > .form-problem")).to_have_text(problem["detail"])
+    expect(page.locator("#batch-main .result-overlay")).to_be_hidden()
+    page.unroute("**/results?*")
+    page.keyboard.press("1")
+    page.keyboard.press("3")
+    wait_until(page, f"() => ({COLOURS})() > 20")
+    expect(page.locator(".batch-results > .form-problem")).to_be_hidden()
+
+
+def test_an_address_without_a_batch_says_so(running: Server, open_page: OpenPage) -> None:
+    page = open_page(running, tolerant=True)  # the browser itself logs the refusal
+    page.evaluate("location.hash = '#batch/nosuch'")
+    expect(page.locator("#batch-main .result-overlay")).to_contain_text("There is no batch 'nosuch'")
 
 
 def test_stop_is_never_covered_in_the_batch_view(running: Server, open_page: OpenPage, mapped: str) -> None:

@@ -120,6 +120,22 @@ def test_order_and_company_change_nothing() -> None:
         assert_equal(each, found[place])
 
 
+@pytest.mark.parametrize("base", [NOMINAL, REALISTIC], ids=["nominal", "realistic"])
+def test_runs_share_what_comes_from_outside_only_where_it_is_the_same(base: Scenario) -> None:
+    runs = Runs(base)
+    mixed = [
+        runs.scenario(SHORT | LOADED_EARLY | {path: value})
+        for number in range(7)
+        for path, value in (
+            ("reference.amplitude", 0.1 + 0.05 * number),
+            ("stiffness_reference.stiffness", 150.0 + 40.0 * number),
+            ("disturbances.link.0.torque", 1.0 + 0.5 * number),
+        )
+    ]
+    for scenario, found in zip(mixed, outcomes([*mixed]), strict=True):
+        assert_equal(found, run_alone(scenario))
+
+
 def test_a_refused_run_is_an_outcome_with_its_reason() -> None:
     scenarios = [NOMINAL.model_copy(update={"duration_s": 0.5})] * 3
     too_heavy = Runs(NOMINAL).scenario(
@@ -145,6 +161,7 @@ def test_the_loop_over_lanes_is_made_of_vectors() -> None:
     anew = numba.njit(error_model="numpy")(kernel.py_func)  # what comes from the cache can no longer be read
     anew.compile(kernel.signatures[0])
     code = anew.inspect_llvm(anew.signatures[0])
-    in_lanes, alone = (len(re.findall(rf"fmul {kind}", code)) for kind in (r"<\d+ x double>", "double"))
-    assert in_lanes > 300
+    kinds = r"<\d+ x double>", "double"
+    in_lanes, alone = (len(re.findall(rf"fmul {kind}|call {kind} @llvm.fma", code)) for kind in kinds)
+    assert in_lanes > 400
     assert alone < 0.2 * in_lanes

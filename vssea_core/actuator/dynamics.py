@@ -9,9 +9,12 @@ import math
 from typing import NamedTuple
 
 from vssea_core.actuator.spring import leaf
-from vssea_core.actuator.stages import shifted_1, shifted_2, shifted_3, shifted_4, shifted_5
+from vssea_core.actuator.stages import POSITION_WEIGHTS as X
+from vssea_core.actuator.stages import VELOCITY_WEIGHTS as V
+from vssea_core.actuator.stages import moved_1, moved_2, moved_3, moved_4, moved_5
 from vssea_core.actuator.surroundings import met_load
 from vssea_core.compiled import entry, inlined
+from vssea_core.fused import fused
 from vssea_core.signals.disturbances import C2, C3, C4, C5, loads_of_step
 
 
@@ -62,25 +65,25 @@ def dry_friction(plant, omega):
 
 
 @inlined
-def motion(plant, met, y, q, q_rate, tau_e, tau_ms, load_l, load_e):
-    """Return the time derivative of y = (theta_l, theta~, theta_ms, omega_l, omega~, omega_ms), Eqs. (1)-(2).
+def accelerations(plant, met, positions, velocities, q, q_rate, tau_e, tau_ms, load_l, load_e):
+    """Return theta_l'', theta~'', theta_ms'' [rad/s^2] at (theta_l, theta~, theta_ms) and their rates, Eqs. (1)-(2).
 
     `q`, `q_rate` are the lag's share of theta_e and theta_e'; `load_l`, `load_e` the disturbance torques [N m] that are
     functions of time; `met` the rows and tick time of what depends on the link's state, or None (compiled without it).
     """
-    theta_l, theta_e, theta_ms, omega_l, omega_e, omega_ms = y
+    theta_l, theta_e, theta_ms = positions
+    omega_l, omega_e, omega_ms = velocities
     if met is not None:
         load_l += met_load(met[0], met[1], theta_l, omega_l)
-    deflection = theta_e + q - theta_l
-    true_omega_e = omega_e + q_rate
-    spring = leaf(deflection, theta_ms)
+    spring = leaf(theta_e + q - theta_l, theta_ms)
     tau_s = plant.spring_constant * spring.torque
     tau_back = tau_s if plant.paper_back_torque != 0.0 else plant.spring_constant * spring.back
-    friction = plant.motor_damping * omega_e + dry_friction(plant, true_omega_e)  # the damping of q' is in q
-    a_l = (tau_s - plant.link_damping * omega_l - load_l) * plant.per_link_inertia
-    a_e = (tau_e - tau_s - friction - load_e) * plant.per_motor_inertia
-    a_ms = (tau_ms - plant.stiffness_damping * omega_ms - tau_back) * plant.per_stiffness_inertia
-    return omega_l, omega_e, omega_ms, a_l, a_e, a_ms
+    load_e += dry_friction(plant, omega_e + q_rate)
+    return (  # the damping of q' is in q
+        fused(-plant.link_damping, omega_l, tau_s - load_l) * plant.per_link_inertia,
+        fused(-plant.motor_damping, omega_e, tau_e - load_e - tau_s) * plant.per_motor_inertia,
+        fused(-plant.stiffness_damping, omega_ms, tau_ms - tau_back) * plant.per_stiffness_inertia,
+    )
 
 
 class LagShares(NamedTuple):
@@ -128,24 +131,39 @@ def dormand_prince_step(plant, met, lag, y, gap, tau_e, tau_ms, loads_l, loads_e
     """Return y after one Dormand-Prince step of order 5 and length h [s], with the torques held.
 
     `gap` is how far the motor's torque still is from `tau_e` [N m] at its start; `loads_l`, `loads_e`, `loads_ms` are the
-    disturbance torques [N m] of link, motor and stiffness motor at its six instants; `met` as in `motion`.
+    disturbance torques [N m] of link, motor and stiffness motor at its six instants; `met` as in `accelerations`.
     """
+    x, v, hh = (y[0], y[1], y[2]), (y[3], y[4], y[5]), h * h
     # Minus zero: the compiler may then leave out the sum, and sees that this spring is the one it has computed already.
-    k1 = motion(plant, met, y, -0.0, -0.0, tau_e, tau_ms - loads_ms[0], loads_l[0], loads_e[0])
-    y2 = shifted_1(y, h, 1 / 5, k1)
-    k2 = motion(plant, met, y2, gap * lag.q2, gap * lag.rate2, tau_e, tau_ms - loads_ms[1], loads_l[1], loads_e[1])
-    y3 = shifted_2(y, h, 3 / 40, k1, 9 / 40, k2)
-    k3 = motion(plant, met, y3, gap * lag.q3, gap * lag.rate3, tau_e, tau_ms - loads_ms[2], loads_l[2], loads_e[2])
-    y4 = shifted_3(y, h, 44 / 45, k1, -56 / 15, k2, 32 / 9, k3)
-    k4 = motion(plant, met, y4, gap * lag.q4, gap * lag.rate4, tau_e, tau_ms - loads_ms[3], loads_l[3], loads_e[3])
-    y5 = shifted_4(y, h, 19372 / 6561, k1, -25360 / 2187, k2, 64448 / 6561, k3, -212 / 729, k4)
-    k5 = motion(plant, met, y5, gap * lag.q5, gap * lag.rate5, tau_e, tau_ms - loads_ms[4], loads_l[4], loads_e[4])
-    y6 = shifted_5(y, h, 9017 / 3168, k1, -355 / 33, k2, 46732 / 5247, k3, 49 / 176, k4, -5103 / 18656, k5)
-    k6 = motion(plant, met, y6, gap * lag.q6, gap * lag.rate6, tau_e, tau_ms - loads_ms[5], loads_l[5], loads_e[5])
-    theta_l, theta_e, theta_ms, omega_l, omega_e, omega_ms = shifted_5(
-        y, h, 35 / 384, k1, 500 / 1113, k3, 125 / 192, k4, -2187 / 6784, k5, 11 / 84, k6
+    a1 = accelerations(plant, met, x, v, -0.0, -0.0, tau_e, tau_ms - loads_ms[0], loads_l[0], loads_e[0])
+    x2 = moved_1(x, h * C2, v)
+    v2 = moved_1(v, h * V[1][0], a1)
+    a2 = accelerations(
+        plant, met, x2, v2, gap * lag.q2, gap * lag.rate2, tau_e, tau_ms - loads_ms[1], loads_l[1], loads_e[1]
     )
-    return theta_l, theta_e + gap * lag.q6, theta_ms, omega_l, omega_e + gap * lag.rate6, omega_ms
+    x3 = moved_2(x, h * C3, v, hh * X[2][0], a1)
+    v3 = moved_2(v, h * V[2][0], a1, h * V[2][1], a2)
+    a3 = accelerations(
+        plant, met, x3, v3, gap * lag.q3, gap * lag.rate3, tau_e, tau_ms - loads_ms[2], loads_l[2], loads_e[2]
+    )
+    x4 = moved_3(x, h * C4, v, hh * X[3][0], a1, hh * X[3][1], a2)
+    v4 = moved_3(v, h * V[3][0], a1, h * V[3][1], a2, h * V[3][2], a3)
+    a4 = accelerations(
+        plant, met, x4, v4, gap * lag.q4, gap * lag.rate4, tau_e, tau_ms - loads_ms[3], loads_l[3], loads_e[3]
+    )
+    x5 = moved_4(x, h * C5, v, hh * X[4][0], a1, hh * X[4][1], a2, hh * X[4][2], a3)
+    v5 = moved_4(v, h * V[4][0], a1, h * V[4][1], a2, h * V[4][2], a3, h * V[4][3], a4)
+    a5 = accelerations(
+        plant, met, x5, v5, gap * lag.q5, gap * lag.rate5, tau_e, tau_ms - loads_ms[4], loads_l[4], loads_e[4]
+    )
+    x6 = moved_5(x, h, v, hh * X[5][0], a1, hh * X[5][1], a2, hh * X[5][2], a3, hh * X[5][3], a4)
+    v6 = moved_5(v, h * V[5][0], a1, h * V[5][1], a2, h * V[5][2], a3, h * V[5][3], a4, h * V[5][4], a5)
+    a6 = accelerations(
+        plant, met, x6, v6, gap * lag.q6, gap * lag.rate6, tau_e, tau_ms - loads_ms[5], loads_l[5], loads_e[5]
+    )
+    x = moved_5(x, h, v, hh * X[6][0], a1, hh * X[6][2], a3, hh * X[6][3], a4, hh * X[6][4], a5)
+    v = moved_5(v, h * V[6][0], a1, h * V[6][2], a3, h * V[6][3], a4, h * V[6][4], a5, h * V[6][5], a6)
+    return x[0], x[1] + gap * lag.q6, x[2], v[0], v[1] + gap * lag.rate6, v[2]
 
 
 @inlined

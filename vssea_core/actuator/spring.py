@@ -8,6 +8,7 @@ import math
 from typing import NamedTuple
 
 from vssea_core.compiled import inlined
+from vssea_core.fused import fused
 
 QUARTER = math.pi / 4.0
 S3, S5, S7, S9, S11, S13, S15 = (1.0 / math.factorial(n) for n in range(3, 16, 2))
@@ -32,8 +33,10 @@ def sine_and_cosine(x):
     x = math.copysign(QUARTER, x) if abs(x) > QUARTER else x  # what is no number stays none
     s = x * x
     ss = s * s
-    sine = (1.0 - s * S3) + ss * ((S5 - s * S7) + ss * ((S9 - s * S11) + ss * (S13 - s * S15)))
-    cosine = (1.0 - s * 0.5) + ss * ((C4 - s * C6) + ss * ((C8 - s * C10) + ss * ((C12 - s * C14) + ss * C16)))
+    sine = fused(ss, fused(-S15, s, S13), fused(-S11, s, S9))
+    sine = fused(ss, fused(ss, sine, fused(-S7, s, S5)), fused(-S3, s, 1.0))
+    cosine = fused(ss, fused(ss, C16, fused(-C14, s, C12)), fused(-C10, s, C8))
+    cosine = fused(ss, fused(ss, cosine, fused(-C6, s, C4)), fused(-0.5, s, 1.0))
     return x * sine, cosine
 
 

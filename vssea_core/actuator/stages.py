@@ -1,71 +1,58 @@
-"""Stage arguments of the Runge-Kutta step: y + h (w1 k1 + ... + wn kn) on the six states of the plant, written out.
+"""The weights of a Runge-Kutta step of order 5 (Dormand-Prince) for x'' = a(x, x', t), and the sums that it takes of them.
 
-A loop over the stages would spill the tuples to memory; written out they stay in registers.
+The slope of a position is a velocity, which is itself a sum of accelerations. With that put in, a stage's positions need
+no velocity but the first, and not the acceleration of the stage before: less to remember, and the springs of two
+successive stages can be computed at the same time. The sums are written out: a loop would put the tuples in memory.
 """
 
+from fractions import Fraction
+
 from vssea_core.compiled import inlined
+from vssea_core.fused import fused
+
+_STAGES = (
+    (),
+    ((1, 5),),
+    ((3, 40), (9, 40)),
+    ((44, 45), (-56, 15), (32, 9)),
+    ((19372, 6561), (-25360, 2187), (64448, 6561), (-212, 729)),
+    ((9017, 3168), (-355, 33), (46732, 5247), (49, 176), (-5103, 18656)),
+    ((35, 384), (0, 1), (500, 1113), (125, 192), (-2187, 6784), (11, 84)),
+)
+_WEIGHTS = [[Fraction(*share) for share in row] + [Fraction(0)] * (6 - len(row)) for row in _STAGES]
+VELOCITY_WEIGHTS = tuple(tuple(map(float, row)) for row in _WEIGHTS)
+"""Of the accelerations of the six stages, in the velocities of each stage and, last, of the step's end; times h."""
+POSITION_WEIGHTS = tuple(
+    tuple(float(sum(row[j] * _WEIGHTS[j][i] for j in range(6))) for i in range(6)) for row in _WEIGHTS
+)
+"""The same in the positions, besides the share of the step that the first velocities have passed; times h^2."""
 
 
 @inlined
-def shifted_1(y, h, w1, k1):
-    """Return y + h times the weighted sum of 1 slope."""
-    return (
-        y[0] + h * (w1 * k1[0]),
-        y[1] + h * (w1 * k1[1]),
-        y[2] + h * (w1 * k1[2]),
-        y[3] + h * (w1 * k1[3]),
-        y[4] + h * (w1 * k1[4]),
-        y[5] + h * (w1 * k1[5]),
-    )
+def moved_1(x, w1, a1):
+    """Return x + w1 a1, of three inertias."""
+    return fused(w1, a1[0], x[0]), fused(w1, a1[1], x[1]), fused(w1, a1[2], x[2])
 
 
 @inlined
-def shifted_2(y, h, w1, k1, w2, k2):
-    """Return y + h times the weighted sum of 2 slopes."""
-    return (
-        y[0] + h * (w1 * k1[0] + w2 * k2[0]),
-        y[1] + h * (w1 * k1[1] + w2 * k2[1]),
-        y[2] + h * (w1 * k1[2] + w2 * k2[2]),
-        y[3] + h * (w1 * k1[3] + w2 * k2[3]),
-        y[4] + h * (w1 * k1[4] + w2 * k2[4]),
-        y[5] + h * (w1 * k1[5] + w2 * k2[5]),
-    )
+def moved_2(x, w1, a1, w2, a2):
+    """Return x + w1 a1 + w2 a2."""
+    return moved_1(moved_1(x, w1, a1), w2, a2)
 
 
 @inlined
-def shifted_3(y, h, w1, k1, w2, k2, w3, k3):
-    """Return y + h times the weighted sum of 3 slopes."""
-    return (
-        y[0] + h * (w1 * k1[0] + w2 * k2[0] + w3 * k3[0]),
-        y[1] + h * (w1 * k1[1] + w2 * k2[1] + w3 * k3[1]),
-        y[2] + h * (w1 * k1[2] + w2 * k2[2] + w3 * k3[2]),
-        y[3] + h * (w1 * k1[3] + w2 * k2[3] + w3 * k3[3]),
-        y[4] + h * (w1 * k1[4] + w2 * k2[4] + w3 * k3[4]),
-        y[5] + h * (w1 * k1[5] + w2 * k2[5] + w3 * k3[5]),
-    )
+def moved_3(x, w1, a1, w2, a2, w3, a3):
+    """Return x + w1 a1 + w2 a2 + w3 a3."""
+    return moved_1(moved_2(x, w1, a1, w2, a2), w3, a3)
 
 
 @inlined
-def shifted_4(y, h, w1, k1, w2, k2, w3, k3, w4, k4):
-    """Return y + h times the weighted sum of 4 slopes."""
-    return (
-        y[0] + h * (w1 * k1[0] + w2 * k2[0] + w3 * k3[0] + w4 * k4[0]),
-        y[1] + h * (w1 * k1[1] + w2 * k2[1] + w3 * k3[1] + w4 * k4[1]),
-        y[2] + h * (w1 * k1[2] + w2 * k2[2] + w3 * k3[2] + w4 * k4[2]),
-        y[3] + h * (w1 * k1[3] + w2 * k2[3] + w3 * k3[3] + w4 * k4[3]),
-        y[4] + h * (w1 * k1[4] + w2 * k2[4] + w3 * k3[4] + w4 * k4[4]),
-        y[5] + h * (w1 * k1[5] + w2 * k2[5] + w3 * k3[5] + w4 * k4[5]),
-    )
+def moved_4(x, w1, a1, w2, a2, w3, a3, w4, a4):
+    """Return x + w1 a1 + ... + w4 a4."""
+    return moved_1(moved_3(x, w1, a1, w2, a2, w3, a3), w4, a4)
 
 
 @inlined
-def shifted_5(y, h, w1, k1, w2, k2, w3, k3, w4, k4, w5, k5):
-    """Return y + h times the weighted sum of 5 slopes."""
-    return (
-        y[0] + h * (w1 * k1[0] + w2 * k2[0] + w3 * k3[0] + w4 * k4[0] + w5 * k5[0]),
-        y[1] + h * (w1 * k1[1] + w2 * k2[1] + w3 * k3[1] + w4 * k4[1] + w5 * k5[1]),
-        y[2] + h * (w1 * k1[2] + w2 * k2[2] + w3 * k3[2] + w4 * k4[2] + w5 * k5[2]),
-        y[3] + h * (w1 * k1[3] + w2 * k2[3] + w3 * k3[3] + w4 * k4[3] + w5 * k5[3]),
-        y[4] + h * (w1 * k1[4] + w2 * k2[4] + w3 * k3[4] + w4 * k4[4] + w5 * k5[4]),
-        y[5] + h * (w1 * k1[5] + w2 * k2[5] + w3 * k3[5] + w4 * k4[5] + w5 * k5[5]),
-    )
+def moved_5(x, w1, a1, w2, a2, w3, a3, w4, a4, w5, a5):
+    """Return x + w1 a1 + ... + w5 a5."""
+    return moved_1(moved_4(x, w1, a1, w2, a2, w3, a3, w4, a4), w5, a5)

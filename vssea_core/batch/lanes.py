@@ -37,7 +37,7 @@ from vssea_core.actuator.dynamics import (
 from vssea_core.actuator.sensors import Encoders, Noise, measure
 from vssea_core.actuator.spring import leaf
 from vssea_core.batch import layout as at
-from vssea_core.batch.lane_access import LANES, lane, put_lane
+from vssea_core.batch.lane_access import LANES, align_stack, lane, put_lane
 from vssea_core.compiled import called, entry, inlined, written_out
 from vssea_core.control.law import (
     BASELINE,
@@ -66,7 +66,8 @@ LINK_AT, MOTOR_AT, STIFFNESS_AT = at.LINK_OBSERVER * LANES, at.MOTOR_OBSERVER * 
 STATE_AT, HEAT_AT, APPLIED_AT, MEMORY_AT = at.STATE * LANES, at.HEAT * LANES, at.APPLIED * LANES, at.MEMORY * LANES
 SLEWED_AT, TARGET_AT, AIM_AT, COMMAND_AT = at.SLEWED * LANES, at.TARGET * LANES, at.AIM * LANES, at.COMMAND * LANES
 LINK_LOADS_AT, MOTOR_LOADS_AT, STEPS_AT = at.LINK_LOADS * LANES, at.MOTOR_LOADS * LANES, at.STEPS * LANES
-SUMS_AT, GONE_AT, COURSE_SIZE, SUMS = at.SUMS * LANES, at.GONE * LANES, at.COURSE_SIZE, at.TAKEN_AT - at.SUMS
+SUMS_AT, GONE_AT, SUMS = at.SUMS * LANES, at.GONE * LANES, at.TAKEN_AT - at.SUMS
+TARGETS, COMMANDS, LOADS = at.COMMAND - at.TARGET, at.LINK_LOADS - at.COMMAND, at.STEPS - at.LINK_LOADS
 TAKEN_FOR, MEASURED_AT = at.TAKEN_AT * LANES, (at.MEMORY + 17) * LANES
 TORQUE_LIMITS = PEAK | CONTINUOUS | SPEED
 
@@ -163,9 +164,9 @@ def lanes_kernel(variant: Variant) -> Callable[..., None]:
     """Return the compiled `advance` of a variant.
 
     `w` (LANE_SIZE LANES) holds all numbers of the lanes, see batch.layout; `tunings` (LANES, n) the prepared tunings, whose
-    gains follow the stiffness if `scheduled`; `courses` (m, count, COURSE_SIZE) what comes from
-    outside, with the disturbances (m, n, 16) it is made of, `which` (LANES) the course of each lane. `count` samples of
-    `period` [s] are passed from sample `first` on; with `delayed` each torque acts a sample later.
+    gains follow the stiffness if `scheduled`. `targets`, `commands`, `loads` (m, count, size) are what comes from outside,
+    each with the course (LANES) of each lane; `link_terms`, `motor_terms` (LANES, n, 16) the disturbances that make the
+    loads. `count` samples of `period` [s] are passed from sample `first` on; with `delayed` each torque acts a sample later.
     """
     form = POSITION_FORM if variant.position_form else VELOCITY_FORM
     predicts, sliding, encoders = variant.predicts, variant.sliding, variant.encoders
@@ -258,12 +259,16 @@ def lanes_kernel(variant: Variant) -> Callable[..., None]:
         tau_e, gap = lane(w, APPLIED_AT + j, 1)[0], lane(w, STEPS_AT + 2 * LANES + j, 1)[0]
         settle(w, j, plant_of(w, j, friction), y, tau_e + gap)
 
-    def advance(w, tunings, courses, link_terms, motor_terms, which, first, count, period, delayed, scheduled):
-        together = True
-        for j in range(LANES):
-            together = together and which[j] == which[0]
+    def advance(
+        w, tunings, targets, target_of, commands, command_of, loads, load_of, link_terms, motor_terms,
+        first, count, period, delayed, scheduled,
+    ):  # fmt: skip
+        align_stack()
+        one_target, one_command, one_load = is_one(target_of), is_one(command_of), is_one(load_of)
         for i in range(count):
-            take_course(w, courses, which, together, i)
+            take_course(w, TARGET_AT, TARGETS, targets, target_of, one_target, i)
+            take_course(w, COMMAND_AT, COMMANDS, commands, command_of, one_command, i)
+            take_course(w, LINK_LOADS_AT, LOADS, loads, load_of, one_load, i)
             if scheduled:
                 take_gains(w, tunings)
             if not friction:
@@ -277,7 +282,7 @@ def lanes_kernel(variant: Variant) -> Callable[..., None]:
                 most = max(most, w[STEPS_AT + j])
             for step in range(int(most)):
                 if most > 1.0:
-                    take_loads(w, link_terms, motor_terms, which, (first + i) * period, step, period)
+                    take_loads(w, link_terms, motor_terms, load_of, (first + i) * period, step, period)
                 for j in range(LANES):
                     next_step(w, j, step, period)
             for j in range(LANES):
@@ -295,17 +300,26 @@ def one_of_three(number, a, b, c):
 
 
 @inlined
-def take_course(w, courses, which, together, i):
-    """Bring into the lanes what comes from outside at sample `i`."""
-    if together:
-        for c in range(COURSE_SIZE):
+def is_one(which):
+    """Return whether all lanes have the same course."""
+    one = True
+    for j in range(LANES):
+        one = one and which[j] == which[0]
+    return one
+
+
+@inlined
+def take_course(w, place, size, courses, which, is_one, i):
+    """Bring into the lanes, from `place` on, the `size` numbers that come from outside at sample `i`."""
+    if is_one:
+        for c in range(size):
             x = courses[which[0], i, c]
             for j in range(LANES):
-                w[TARGET_AT + c * LANES + j] = x
+                w[place + c * LANES + j] = x
     else:
         for j in range(LANES):
-            for c in range(COURSE_SIZE):
-                w[TARGET_AT + c * LANES + j] = courses[which[j], i, c]
+            for c in range(size):
+                w[place + c * LANES + j] = courses[which[j], i, c]
 
 
 @called
@@ -333,5 +347,5 @@ def take_loads(w, link_terms, motor_terms, which, time, step, period):
                 w[LINK_LOADS_AT + c * LANES + j] = w[LINK_LOADS_AT + c * LANES + j - 1]
             continue
         h = period / steps
-        put_lane(w, LINK_LOADS_AT + j, loads_of_step(link_terms[which[j]], time, time + step * h, h, False))
-        put_lane(w, MOTOR_LOADS_AT + j, loads_of_step(motor_terms[which[j]], time, time + step * h, h, False))
+        put_lane(w, LINK_LOADS_AT + j, loads_of_step(link_terms[j], time, time + step * h, h, False))
+        put_lane(w, MOTOR_LOADS_AT + j, loads_of_step(motor_terms[j], time, time + step * h, h, False))

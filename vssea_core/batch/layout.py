@@ -26,7 +26,6 @@ TAKEN_AT = SUMS + 17  # stiffness motor position [rad] for which the gains in th
 GONE = TAKEN_AT + 1  # not 0 once the run cannot go on: it is then run alone, which tells when and why
 LANE_SIZE = GONE + 1
 
-COURSE_SIZE = STEPS - TARGET
 LAGS = RIG + state.PLANT_SIZE
 DRIVES, ENCODERS = RIG + state.DRIVES_AT, RIG + state.ENCODERS_AT
 STIFFNESS_OBSERVER = PREPARED + STIFFNESS_AT

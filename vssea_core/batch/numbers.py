@@ -1,7 +1,10 @@
 """A scenario as the numbers that its run reads; those of a part that another run had too are taken over."""
 
 from collections import OrderedDict
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +13,9 @@ from vssea_core.batch.lanes import Variant
 from vssea_core.control.law import GAINS, POSITION_FORM, SLIDING_MODE, TANH, Law
 from vssea_core.control.packing import TABLE_AT
 from vssea_core.control.prepared import prepare
-from vssea_core.control.tuning import Tuning
 from vssea_core.scenario import Scenario
-from vssea_core.signals.disturbances import SINE
+from vssea_core.signals.disturbances import SINE, disturbance_tables
+from vssea_core.signals.documents import Disturbances
 from vssea_core.signals.references import reference_row
 from vssea_core.signals.stiffness import Slew, slew_row
 from vssea_core.simulation.state import (
@@ -25,12 +28,13 @@ from vssea_core.simulation.state import (
     SLEWED,
     Inputs,
     equilibrium_state,
-    inputs_of,
+    rig_row,
 )  # fmt: skip
 
+Result = TypeVar("Result")
 Numbers = NDArray[np.float64]
 KEPT = 4096
-"""Prepared tunings that are kept for the runs that share them."""
+"""Of what is made of a part, so many are kept for the runs that share the part."""
 SLEW_TO = Slew._fields.index("theta_to")
 _OBSERVER_AT, _PREDICT_AT, _SWITCH_AT = (
     Law._fields.index(name) - GAINS for name in ("observer", "predict", "switch")
@@ -60,59 +64,78 @@ class RunNumbers:
         """Whether gains follow the stiffness."""
         return bool(self.prepared[TABLE_AT] > 1.0)
 
-    @property
-    def course(self) -> bytes:
-        """What its course depends on besides the period: runs with the same share one."""
+    @cached_property
+    def course(self) -> tuple[bytes, bytes, bytes]:
+        """What reference, stiffness command and loads depend on besides the period: runs with the same share them."""
         inputs = self.inputs
-        parts = (self.reference, self.slew[:6], inputs.link_terms, inputs.motor_terms)
-        return b"|".join(part.tobytes() for part in parts)
+        loads = inputs.link_terms.tobytes() + b"|" + inputs.motor_terms.tobytes()
+        return self.reference.tobytes(), self.slew[:6].tobytes(), loads
 
 
 class NumbersOf:
     """Makes the RunNumbers of scenarios."""
 
     def __init__(self) -> None:
-        self._prepared: OrderedDict[tuple[int, float, float, float], tuple[Tuning, Numbers]] = OrderedDict()
+        self._prepared = OfParts(prepare)
+        self._loads = OfParts(Loads.of)
+        self._reference_row = OfParts(reference_row)
 
     def __call__(self, scenario: Scenario) -> RunNumbers:
         """Return the numbers of `scenario`. Raises ValueError if it cannot start or a design has no solution."""
         period, mechanism = scenario.timing.sample_time_s, scenario.actuator.stiffness
-        inputs = inputs_of(scenario)
-        prepared = self._prepared_of(scenario.tuning, period, (mechanism.softest, mechanism.stiffest))
+        loads = self._loads(scenario.disturbances, period, scenario.seed)
+        inputs = Inputs(rig_row(scenario), *loads.tables)
+        prepared = self._prepared(scenario.tuning, period, (mechanism.softest, mechanism.stiffest))
         slew = slew_row(scenario.stiffness_reference, scenario.tuning, mechanism, period)
         state = equilibrium_state(scenario, inputs)
+        fits = loads.are_plain and not scenario.sequence
         return RunNumbers(
             scenario,
             max(1, round(scenario.duration_s / period)),
             inputs,
             prepared,
-            reference_row(scenario.reference),
+            self._reference_row(scenario.reference),
             slew,
             state,
-            variant_of(scenario, inputs, prepared, slew, state),
+            variant_of(scenario, inputs.rig, prepared, slew, state) if fits else None,
         )
 
-    def _prepared_of(self, tuning: Tuning, period_s: float, stiffnesses: tuple[float, float]) -> Numbers:
-        key = (id(tuning), period_s, *stiffnesses)
-        found = self._prepared.get(key)
+
+class OfParts(Generic[Result]):
+    """What is made of a part of a scenario, made once for all scenarios that share the part."""
+
+    def __init__(self, make: Callable[..., Result]) -> None:
+        self._make = make
+        self._made: OrderedDict[tuple[Any, ...], tuple[Any, Result]] = OrderedDict()
+
+    def __call__(self, part: Any, *rest: Any) -> Result:
+        """Return what is made of `part` and `rest`."""
+        key = id(part), *rest
+        found = self._made.get(key)
         if found is None:
-            found = self._prepared[key] = (
-                tuning,
-                prepare(tuning, period_s, stiffnesses),
-            )  # the tuning stays: so does its id
-            if len(self._prepared) > KEPT:
-                self._prepared.popitem(last=False)
+            found = self._made[key] = part, self._make(part, *rest)  # the part stays: so does its id
+            if len(self._made) > KEPT:
+                self._made.popitem(last=False)
         return found[1]
 
 
-def variant_of(scenario: Scenario, inputs: Inputs, prepared: Numbers, slew: Numbers, state: Numbers) -> Variant | None:
+class Loads(NamedTuple):
+    """The disturbance terms of link, motor and stiffness motor, and whether lanes know all of them."""
+
+    tables: tuple[Numbers, Numbers, Numbers]
+    are_plain: bool
+
+    @classmethod
+    def of(cls, disturbances: Disturbances, sample_time_s: float, seed: int) -> "Loads":
+        """Return those of a scenario."""
+        link, motor, stiffness = tables = disturbance_tables(disturbances, sample_time_s, seed)
+        return cls(tables, bool(len(stiffness) == 0 and (link[:, 0] <= SINE).all() and (motor[:, 0] <= SINE).all()))
+
+
+def variant_of(scenario: Scenario, rig: Numbers, prepared: Numbers, slew: Numbers, state: Numbers) -> Variant | None:
     """Return the kernel in whose lanes a scenario can run; None for what few runs need, and lanes leave out."""
-    rig = inputs.rig
     is_late, is_noisy = rig[DELAY_AT : DELAY_AT + DELAY_SIZE].any(), rig[NOISE_AT + NOISE_SIZE - 1] != 0.0
-    is_loaded_otherwise = (
-        len(inputs.stiffness_terms) or (inputs.link_terms[:, 0] > SINE).any() or (inputs.motor_terms[:, 0] > SINE).any()
-    )
-    if scenario.sequence or is_late or is_noisy or is_loaded_otherwise or prepared[_SWITCH_AT] == TANH:
+    if is_late or is_noisy or prepared[_SWITCH_AT] == TANH:
         return None
     return Variant(
         bool(prepared[_OBSERVER_AT] == POSITION_FORM),

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from vssea_core.batch import layout as at
 from vssea_core.batch.course_book import CourseBook
-from vssea_core.batch.lane_access import LANES
+from vssea_core.batch.lane_access import LANES, aligned_lanes
 from vssea_core.batch.lanes import Variant, lanes_kernel
 from vssea_core.batch.numbers import RunNumbers
 from vssea_core.batch.sums import first_sums, metrics_of_sums
@@ -29,7 +29,7 @@ def run_side_by_side(
     """
     first = runs[0]
     period, count = first.scenario.timing.sample_time_s, first.count
-    lanes = np.zeros((at.LANE_SIZE, LANES))
+    lanes = aligned_lanes(at.LANE_SIZE)
     gone = np.zeros(len(runs), dtype=bool)
     for j, each in enumerate(runs):
         gone[j] = not _start(each, lanes[:, j])
@@ -39,9 +39,14 @@ def run_side_by_side(
     kernel, block = lanes_kernel(variant), lanes.ravel()
     for begin in range(1, count, BLOCK):
         samples = min(BLOCK, count - begin)
+        pages = (
+            courses.targets.pages(begin, samples, period), courses.targets.which,
+            courses.commands.pages(begin, samples, period), courses.commands.which,
+            courses.loads.pages(begin, samples, period), courses.loads.which,
+        )  # fmt: skip
         kernel(
-            block, tunings, courses.pages(begin, samples), courses.link_terms, courses.motor_terms,
-            courses.which, begin, samples, period, first.delayed, first.is_scheduled,
+            block, tunings, *pages, courses.link_terms, courses.motor_terms,
+            begin, samples, period, first.delayed, first.is_scheduled,
         )  # fmt: skip
         if lanes[at.GONE].all():
             break

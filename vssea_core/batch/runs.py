@@ -1,12 +1,13 @@
 """The scenario of each run: the base with values set by path. A part that several runs share is made and checked once."""
 
-import json
 from collections import OrderedDict
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError, create_model
+from pydantic_core import from_json, to_json
 
 from vssea_core.changes import set_values
+from vssea_core.field_errors import field_errors, sentence_of
 from vssea_core.scenario import Scenario, check_fits
 
 Values = dict[str, Any]
@@ -24,8 +25,8 @@ class Runs:
 
     def __init__(self, base: Scenario) -> None:
         self._base = base
-        self._texts = {name: json.dumps({name: part}) for name, part in base.model_dump(mode="json").items()}
-        self._parts: OrderedDict[str, Any] = OrderedDict()
+        self._texts = {name: to_json({name: part}) for name, part in base.model_dump(mode="json").items()}
+        self._parts: OrderedDict[tuple[str, str], Any] = OrderedDict()
 
     def scenario(self, values: Values) -> Scenario:
         """Return the base with `values` by path. Raises UnknownPath, or ValueError for values that are refused."""
@@ -37,7 +38,7 @@ class Runs:
         return scenario
 
     def _part(self, name: str, values: Values) -> Any:
-        key = json.dumps(values, sort_keys=True)
+        key = name, repr(values)
         if key not in self._parts:
             self._parts[key] = self._made(name, values)
             if len(self._parts) > KEPT:
@@ -45,11 +46,9 @@ class Runs:
         return self._parts[key]
 
     def _made(self, name: str, values: Values) -> Any:
-        document = json.loads(self._texts.get(name, "{}"))
+        document = from_json(self._texts.get(name, b"{}"))
         set_values(document, Scenario, values)
         try:
-            return getattr(_PART_MODELS[name].model_validate_json(json.dumps(document)), name)
+            return getattr(_PART_MODELS[name].model_validate_json(to_json(document)), name)
         except ValidationError as error:
-            first = error.errors(include_url=False)[0]
-            place = ".".join(map(str, first["loc"]))
-            raise ValueError(f"{place} {first['msg'].removeprefix('Value error, ')}") from error
+            raise ValueError(sentence_of(field_errors(error, _PART_MODELS[name]))) from error

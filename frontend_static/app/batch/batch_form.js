@@ -1,25 +1,11 @@
-import { NumberBox } from "../analyse/number_box.js";
 import { element, setText } from "../element.js";
-import { batchDocument, nameFor } from "./batch_document.js";
+import { batchDocument } from "./batch_document.js";
 import { Estimate } from "./estimate.js";
 import { FieldSearch } from "./field_search.js";
+import { Fold } from "./fold.js";
+import { FormOptions } from "./form_options.js";
 import { scenarioFields } from "./scenario_fields.js";
 import { VariationRow } from "./variation_row.js";
-
-const METHODS = [
-  ["random", "at random"],
-  ["latin_hypercube", "Latin hypercube"],
-  ["sobol", "Sobol sequence"],
-];
-const KEEPS = [
-  ["none", "of no run"],
-  ["ended", "of runs that end early"],
-  ["all", "of all runs"],
-];
-const NOISES = [
-  ["same", "the same in all runs"],
-  ["own", "another in each run"],
-];
 
 /** Defines a batch from the present scenario: which fields vary and how, what it will take, start. */
 export class BatchForm {
@@ -35,41 +21,26 @@ export class BatchForm {
     this.schema = null;
     this.search = new FieldSearch((field) => this.vary(field.path));
     this.list = element("ol", { class: "variations", "aria-label": "Varied fields" });
+    this.intro = element("p", { class: "hint" }, "Many runs of the present scenario, with these fields varied.");
     this.empty = element("p", { class: "hint" }, "Choose a field: it gets a range, which you can change. Two fields on grids make a map.");
-    this.draws = new NumberBox("number of random draws");
-    this.draws.set(1000);
-    this.method = choice("How random values are spread", METHODS);
-    this.random = element("div", { class: "form-row" }, element("span", { class: "form-name" }, "draws"), this.draws.root, this.method);
-    this.name = element("input", { type: "text", maxlength: 80, "aria-label": "Name of the batch", placeholder: "name", autocomplete: "off", spellcheck: "false" });
-    this.noise = choice("Noise", NOISES);
-    this.keep = choice("Samples kept", KEEPS);
-    this.seed = new NumberBox("seed of random values");
-    this.seed.set(0);
-    this.more = element(
-      "details",
-      {},
-      element("summary", {}, "More"),
-      element("div", { class: "form-row" }, element("span", { class: "form-name" }, "noise"), this.noise),
-      element("div", { class: "form-row" }, element("span", { class: "form-name" }, "samples"), this.keep),
-      element("div", { class: "form-row" }, element("span", { class: "form-name" }, "seed"), this.seed.root, element("span", { class: "form-unit" }, "of random values")),
-    );
+    this.options = new FormOptions();
     this.estimate = new Estimate();
     this.problem = element("p", { class: "form-problem", role: "status", hidden: true });
     this.button = element("button", { type: "submit", class: "start" }, "Start");
+    this.body = element(
+      "div",
+      { id: "batch-new", class: "batch-form-body" },
+      this.intro,
+      this.search.root,
+      element("div", { class: "batch-form-fields" }, this.empty, this.list, ...this.options.parts),
+      element("div", { class: "batch-form-end" }, this.estimate.root, this.problem, element("div", { class: "form-row" }, this.button)),
+    );
+    this.fold = new Fold("New batch", this.body);
     this.root = element(
       "form",
       { class: "side-panel batch-form", "aria-label": "New batch", novalidate: true, submit: (event) => this.#submit(event), change: () => this.#changed(), input: () => this.#changed() },
-      element("h2", {}, "New batch"),
-      element("p", { class: "hint" }, "Many runs of the present scenario, with these fields varied."),
-      this.search.root,
-      this.empty,
-      this.list,
-      this.random,
-      element("div", { class: "form-row" }, element("span", { class: "form-name" }, "name"), this.name),
-      this.more,
-      this.estimate.root,
-      this.problem,
-      element("div", { class: "form-row" }, this.button),
+      this.fold.root,
+      this.body,
     );
     session.document.addEventListener("change", () => this.#read());
     this.#arrange();
@@ -124,9 +95,10 @@ export class BatchForm {
 
   #arrange() {
     this.search.offer(this.#fields, new Set(this.#rows.map(({ field }) => field.path)));
-    this.empty.hidden = this.#rows.length > 0;
-    this.random.hidden = !this.#rows.some(({ isRandom }) => isRandom);
-    this.name.placeholder = this.#rows.length ? nameFor(this.#rows) : "name";
+    this.intro.hidden = this.empty.hidden = this.#rows.length > 0;
+    this.options.arrange(this.#rows);
+    const count = this.#rows.length;
+    this.fold.say(count ? `${count} field${count === 1 ? "" : "s"}` : "");
     this.button.disabled = this.#rows.length === 0;
     this.#say("");
   }
@@ -142,14 +114,7 @@ export class BatchForm {
   }
 
   #document() {
-    return batchDocument(this.session.document.beginning, this.#rows, {
-      name: this.name.value.trim(),
-      seed: this.seed.read(),
-      noise: this.noise.value,
-      keep: this.keep.value,
-      draws: this.draws.read(),
-      method: this.method.value,
-    });
+    return batchDocument(this.session.document.beginning, this.#rows, this.options.read());
   }
 
   async #submit(event) {
@@ -172,10 +137,6 @@ export class BatchForm {
     setText(this.problem, sentence);
     this.problem.hidden = sentence === "";
   }
-}
-
-function choice(label, options) {
-  return element("select", { "aria-label": label }, ...options.map(([value, text]) => new Option(text, value)));
 }
 
 /** A page that is not served over HTTPS has no crypto.randomUUID. */

@@ -1,7 +1,8 @@
 import { element, setText } from "../element.js";
 import { when } from "../presets/when.js";
 import { batchAddress } from "./batch_routes.js";
-import { STATES, countsWords, isActive, rateWords, runsWords, spanWords } from "./words.js";
+import { showProgress } from "./progress.js";
+import { STATES, countsWords, isPreparing, rateWords, runsWords, spanWords } from "./words.js";
 
 const FORMS = [
   ["parquet", "Parquet"],
@@ -12,7 +13,7 @@ const FORMS = [
 /** Above the results of a batch: what it is, how far it is, how its runs ended, and its files. */
 export class BatchHead {
   constructor() {
-    this.title = element("h2", { class: "recording-title" });
+    this.title = element("h2", { class: "batch-name" });
     this.state = element("span", { class: "batch-state" });
     this.counts = element("p", { class: "result-caption", role: "status" });
     this.progress = element("progress", { max: 1, "aria-label": "Progress of the batch" });
@@ -23,15 +24,13 @@ export class BatchHead {
   }
 
   show(batch) {
-    const active = isActive(batch);
     setText(this.title, batch.name);
     this.title.title = batch.description || batch.name;
     setText(this.state, stateWords(batch));
     this.state.dataset.state = batch.state;
     const reason = batch.reason ? ` ${batch.reason}` : "";
     setText(this.counts, `${runsWords(batch.runs)}: ${countsWords(batch.counts)}.${reason}`);
-    this.progress.value = batch.progress?.share ?? 0;
-    this.progress.style.visibility = active ? "visible" : "hidden";
+    showProgress(this.progress, batch);
     for (const { form, link } of this.results) link.href = batchAddress(batch.id, `results.${form}`);
     this.samples.href = batchAddress(batch.id, "trajectories.parquet");
     this.samples.hidden = !batch.trajectories || batch.trajectories === "none";
@@ -39,7 +38,9 @@ export class BatchHead {
   }
 }
 
-function stateWords({ state, progress, rate, seconds_left: left, seconds, ended_at: ended }) {
+function stateWords(batch) {
+  const { state, progress, rate, seconds_left: left, seconds, ended_at: ended } = batch;
+  if (isPreparing(batch)) return `preparing · ${spanWords(seconds)}`;
   if (state === "running") {
     const remaining = left === null || left === undefined ? "" : `${spanWords(left)} left`;
     return [`${Math.floor(100 * (progress?.share ?? 0))} %`, rateWords(rate), remaining].filter(Boolean).join(" · ");

@@ -1,10 +1,13 @@
 import { arrange, element, setText } from "../element.js";
 import { when } from "../presets/when.js";
-import { STATES, isActive, rateWords, runsWords, spanWords } from "./words.js";
+import { showProgress } from "./progress.js";
+import { STATES, countWords, isActive, isPreparing, rateWords, runsWords, spanWords } from "./words.js";
 
 /** The list of batches: how far each is, at what rate, how long still; cancel, delete, and open one. */
 export class BatchList {
   #lines = new Map();
+  #isListed = false;
+  #awaited = null; // the batch that gets the focus
 
   /** @param {import("./batches.js").Batches} batches @param {object} ask AskDialog @param {(id: string) => void} open */
   constructor(batches, ask, open) {
@@ -14,7 +17,7 @@ export class BatchList {
     this.list = element("ol", { class: "batch-list" });
     this.problem = element("p", { class: "form-problem", role: "status", hidden: true });
     this.empty = element("p", { class: "hint" }, "Loading…");
-    this.root = element("section", { class: "side-panel", "aria-label": "Batches" }, element("h2", {}, "Batches"), this.problem, this.list, this.empty);
+    this.root = element("section", { class: "side-panel batch-list-panel", "aria-label": "Batches" }, element("h2", {}, "Batches"), this.problem, this.list, this.empty);
     batches.addEventListener("list", () => this.#show());
     batches.addEventListener("problem", () => {
       setText(this.problem, batches.problem);
@@ -24,8 +27,18 @@ export class BatchList {
 
   /** Mark the one whose results are shown. */
   mark(id) {
+    const isOther = id !== this.marked;
     this.marked = id;
     for (const [own, line] of this.#lines) line.mark(own === id);
+    if (isOther) this.#reveal();
+  }
+
+  /** Bring the marked one in sight, in the list alone: the page stays where it is. */
+  #reveal() {
+    const line = this.#lines.get(this.marked)?.root;
+    if (!line) return;
+    const [box, own] = [this.root.getBoundingClientRect(), line.getBoundingClientRect()];
+    this.root.scrollTop += Math.min(0, own.top - box.top) + Math.max(0, own.bottom - box.bottom);
   }
 
   #show() {
@@ -37,14 +50,28 @@ export class BatchList {
       this.#lines.get(batch.id).show(batch);
     }
     arrange(this.list, list.map(({ id }) => this.#lines.get(id).root));
-    setText(this.empty, list.length ? `The newest ${list.length} of ${total}.` : "None yet. Choose fields above and start: its results are kept here.");
+    setText(this.empty, list.length ? `The newest ${list.length} of ${total}.` : "None yet. Choose fields above and start one: it is kept here with its results.");
     this.empty.hidden = list.length > 0 && total <= list.length;
-    this.mark(this.marked);
+    for (const [own, line] of this.#lines) line.mark(own === this.marked);
+    if (!this.#isListed && list.length) this.#reveal();
+    this.#isListed = list.length > 0;
+    if (this.#awaited !== null) this.focus(this.#awaited);
   }
 
   async remove(batch) {
     const text = `${runsWords(batch.runs)} and their results. They cannot be brought back.`;
-    if (await this.ask.sure(`Delete ${batch.name}?`, text, "Delete")) this.batches.remove(batch.id);
+    if (!(await this.ask.sure(`Delete ${batch.name}?`, text, "Delete"))) return;
+    const ids = this.batches.list.map(({ id }) => id);
+    const place = ids.indexOf(batch.id);
+    await this.batches.remove(batch.id);
+    if (document.activeElement === document.body) this.focus(ids[place + 1] ?? ids[place - 1]);
+  }
+
+  /** Give a batch the focus, as soon as it is listed. */
+  focus(id) {
+    const line = this.#lines.get(id);
+    this.#awaited = line ? null : id;
+    line?.title.focus();
   }
 }
 
@@ -61,6 +88,7 @@ class BatchLine {
   }
 
   mark(isShown) {
+    this.root.classList.toggle("is-shown", isShown);
     if (isShown) this.title.setAttribute("aria-current", "true");
     else this.title.removeAttribute("aria-current");
   }
@@ -72,15 +100,18 @@ class BatchLine {
     this.root.dataset.id = batch.id;
     setText(this.title, batch.name);
     this.title.title = `${batch.name}, ${when(batch.created_at)}`;
-    const share = batch.progress?.share ?? 0;
-    setText(this.state, batch.state === "running" ? `${Math.floor(100 * share)} %` : (STATES[batch.state] ?? batch.state));
+    setText(this.state, stateWord(batch));
     for (const button of [this.cancel, this.delete]) button.setAttribute("aria-label", `${button.textContent} ${batch.name}`);
     this.cancel.hidden = !active;
     this.delete.hidden = active;
-    this.progress.hidden = !active;
-    this.progress.value = share;
+    showProgress(this.progress, batch);
     setText(this.words, lineWords(batch));
   }
+}
+
+function stateWord(batch) {
+  if (isPreparing(batch)) return "preparing";
+  return batch.state === "running" ? `${Math.floor(100 * (batch.progress?.share ?? 0))} %` : (STATES[batch.state] ?? batch.state);
 }
 
 /** @returns {string} the second line: rate and time left while it runs, else when it was made and what became of it */
@@ -90,5 +121,7 @@ export function lineWords(batch) {
     return [runsWords(batch.runs), rateWords(batch.rate), left].filter(Boolean).join(" · ");
   }
   if (batch.state === "queued") return `${runsWords(batch.runs)} · waits for the batches before it`;
-  return [runsWords(batch.runs), when(batch.created_at), batch.state === "done" ? spanWords(batch.seconds) : batch.reason].filter(Boolean).join(" · ");
+  const { done = 0 } = batch.progress ?? {};
+  const runs = batch.state === "done" ? runsWords(batch.runs) : `${countWords(done)} of ${runsWords(batch.runs)}`;
+  return [runs, when(batch.created_at), batch.state === "done" ? spanWords(batch.seconds) : batch.reason].filter(Boolean).join(" · ");
 }

@@ -14,9 +14,11 @@ import { countWords, isActive } from "./words.js";
 const RELOAD_MS = 1500;
 const REST = 4; // times as long as the results took to fetch, before they are fetched again
 const NOTHING = "No results yet. Choose fields on the left and start a batch, or open one of the list.";
-const WAITS = {
+const WITHOUT = {
   queued: "No results yet: it waits for the batches before it.",
-  running: "No results yet: the first part is under way. The first batch after an installation compiles its code before, which takes some minutes.",
+  cancelled: "It was cancelled before its first part was done: it has no results.",
+  failed: "It failed before its first part was done: it has no results.",
+  running: "No results yet: the first part is under way. Code that is used for the first time is compiled before it, which can take a minute, and some minutes after an installation.",
 };
 
 /** The results of one batch: its head, what is drawn of them, the chosen run. */
@@ -29,6 +31,7 @@ export class BatchPage {
   constructor({ session, theme }) {
     this.batch = null;
     this.schema = null;
+    this.isLost = false;
     this.table = new ResultTable();
     this.head = new BatchHead();
     this.choice = new PictureChoice(() => this.#need());
@@ -45,8 +48,11 @@ export class BatchPage {
 
   /** Show a batch, or none. @param {string|null} id @param {import("../document/parameter_schema.js").ParameterSchema} schema */
   async open(id, schema) {
-    if (id === this.table.id) return;
+    if (id === this.table.id && !this.isLost) return;
+    this.schema = schema;
+    this.isLost = false;
     clearTimeout(this.#timer);
+    this.#timer = null;
     this.#closeRun();
     this.table.open(id);
     this.batch = null;
@@ -60,23 +66,27 @@ export class BatchPage {
     try {
       const [batch, document] = await Promise.all([batchRoutes.batch(id), batchRoutes.document(id)]);
       if (id !== this.table.id) return;
-      this.columns = new Columns(batch, scenarioFields(document.scenario, schema));
+      this.columns = new Columns(batch, scenarioFields(document.scenario, schema), document);
       this.choice.offer(this.columns);
       this.results.hidden = false;
       this.take(batch);
       if (!this.#seen) this.#need();
     } catch (refusal) {
-      if (id === this.table.id) this.#tell(refusal.message);
+      if (id !== this.table.id) return;
+      this.isLost = true;
+      this.#tell(refusal.message);
     }
   }
 
   /** Newer facts of the batch that is shown. */
   take(batch) {
-    if (batch.id !== this.table.id || !this.columns) return;
+    if (batch.id !== this.table.id) return;
+    if (this.isLost) return void this.open(batch.id, this.schema);
+    if (!this.columns) return;
     this.batch = batch;
     this.head.show(batch);
     const seen = `${batch.state} ${batch.progress?.done}`;
-    if (seen === this.#seen) return;
+    if (seen === this.#seen && !this.table.problem) return;
     this.#seen = seen;
     if (!isActive(batch)) return this.#reload();
     this.#timer ??= setTimeout(() => this.#reload(), Math.max(0, this.#nextAt - performance.now()));
@@ -124,16 +134,22 @@ export class BatchPage {
     this.plot.root.hidden = isList;
     this.plot.readout.hidden = isList;
     this.unwell.root.hidden = !isList;
+    if (table.problem && !table.rows) this.#tell("");
     if (!table.has(this.#names())) return;
     const sentence = this.#nothing(isList);
     this.#tell(sentence);
     if (isList) this.unwell.show(table, this.columns);
-    else this.plot.show(sentence ? null : this.choice.picture(table));
+    else this.plot.show(sentence && !this.#hasAxes() ? null : this.choice.picture(table), !sentence);
+  }
+
+  /** A map has its axes before it has a result. */
+  #hasAxes() {
+    return isActive(this.batch) && this.choice.kind === "map" && this.columns.paths.length > 1;
   }
 
   /** @returns {string} why nothing can be drawn, "" if something can */
   #nothing(isList) {
-    if (!this.table.rows) return WAITS[this.batch?.state] ?? "It has no results.";
+    if (!this.table.rows) return WITHOUT[this.batch?.state] ?? "It has no results.";
     if (this.choice.kind === "map" && this.columns.paths.length < 2) return "A map needs two varied fields. This batch varies one: see the scatter plot.";
     if (!isList && !this.table.column("state").some((state) => state !== "refused")) return "Every run was refused: see “Not done” for the reasons.";
     return "";

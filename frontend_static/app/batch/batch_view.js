@@ -5,6 +5,7 @@ import { BatchPage } from "./batch_page.js";
 import { Batches } from "./batches.js";
 
 const VIEW = "batch";
+const STACKED = matchMedia("(max-width: 799px)");
 
 /** The view Batch: what to run and the list of batches on the left, the results of one beside it; its address is #batch/<id>. */
 export class BatchView {
@@ -12,12 +13,13 @@ export class BatchView {
   constructor(root, { session, theme, views, ask }) {
     this.views = views;
     this.schema = null;
+    this.path = null; // of the batch that was shown last
     this.batches = new Batches(session);
     this.form = new BatchForm(session, (document, key) => this.#start(document, key));
     this.list = new BatchList(this.batches, ask, (id) => views.go(VIEW, id));
     this.page = new BatchPage({ session, theme });
     root.append(
-      element("div", { id: "batch-side", tabindex: "0", role: "group", "aria-label": "New batch, and the list of batches" }, this.form.root, this.list.root),
+      element("div", { id: "batch-side" }, this.form.root, this.list.root),
       this.page.root,
     );
     this.batches.addEventListener("list", () => this.#listed());
@@ -34,7 +36,10 @@ export class BatchView {
 
   async #start(document, key) {
     const { id } = await this.batches.start(document, key);
-    if (this.views.shown === VIEW) this.views.go(VIEW, id);
+    if (this.views.shown !== VIEW) return;
+    const hasFocus = [document.body, ...this.form.body.querySelectorAll("*")].includes(document.activeElement);
+    this.views.go(VIEW, id);
+    if (hasFocus) this.list.focus(id); // the form that had it folds
   }
 
   #look() {
@@ -44,6 +49,14 @@ export class BatchView {
     if (!isShown || !this.schema) return;
     this.page.open(this.views.path || null, this.schema);
     this.list.mark(this.views.path);
+    if (this.views.path !== this.path) this.#turn(this.views.path);
+  }
+
+  /** Where there is little room, the form gives way to the list, and both to the results. */
+  #turn(path) {
+    this.path = path;
+    this.form.fold.open(path === "");
+    if (path && STACKED.matches) this.page.root.scrollIntoView({ block: "start" });
   }
 
   #listed() {
@@ -51,6 +64,6 @@ export class BatchView {
     if (shown !== VIEW || !path) return;
     const batch = this.batches.get(path);
     if (batch) this.page.take(batch);
-    else if (this.batches.total <= this.batches.list.length) this.views.go(VIEW, "");
+    else if (this.page.batch?.id === path && this.batches.total <= this.batches.list.length) this.views.go(VIEW, "");
   }
 }

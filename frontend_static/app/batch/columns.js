@@ -1,5 +1,6 @@
 import { METRICS } from "../recordings/metric_words.js";
 import { pathWords } from "./scenario_fields.js";
+import { variedValues } from "./varied_values.js";
 
 const LIMIT = "limit_share.";
 const CHOICES = new Set(["string", "boolean"]);
@@ -8,16 +9,24 @@ const LOWERED = { a: "ₐ", e: "ₑ", h: "ₕ", k: "ₖ", l: "ₗ", m: "ₘ", n:
 
 /** What the columns of a batch's results are called, and in which unit they are shown: varied fields by the schema, figures. */
 export class Columns {
-  /** @param {object} batch its `paths` and `columns` @param {object[]} fields of its scenario, see scenario_fields.js */
-  constructor({ paths, columns }, fields) {
+  /** @param {object} batch its `paths` and `columns` @param {object[]} fields of its scenario, see scenario_fields.js
+   *  @param {object} document of the batch */
+  constructor({ paths, columns }, fields, document) {
     this.paths = paths;
     this.fields = new Map(fields.map((field) => [field.path, field]));
+    this.varied = variedValues(document, (path) => Boolean(this.fields.get(path)?.isWhole));
     this.figures = columns.filter((name) => name in METRICS || name.startsWith(LIMIT) || name === "time_s");
   }
 
-  /** @returns {{name: string, label: string, unit: string, factor: number, title: string, isLogarithmic: boolean, options: object[]|null}} */
+  /**
+   * @returns {{name: string, label: string, unit: string, factor: number, title: string, isLogarithmic: boolean|null,
+   *   options: object[]|null, varied: object|null}} `isLogarithmic` is null where nothing says so; `varied`: see varied_values.js
+   */
   describe(name) {
-    const found = { name, factor: 1, unit: "", isLogarithmic: false, options: null, ...this.#own(name) };
+    const varied = this.varied.get(name) ?? null;
+    const own = this.#own(name);
+    const isLogarithmic = varied?.isLogarithmic ?? (own.isLogarithmic || null);
+    const found = { name, factor: 1, unit: "", options: null, ...own, isLogarithmic, varied };
     return { ...found, title: found.unit ? `${found.label} [${found.unit}]` : found.label };
   }
 

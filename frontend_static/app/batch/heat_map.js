@@ -1,13 +1,16 @@
 import { sequentialColour } from "../analyse/colour_scale.js";
 import { compact } from "../quantity.js";
-import { fitted, line } from "./plot_axes.js";
-import { NumberScale, cellScale, endsOf } from "./scales.js";
+import { cellScale } from "./cell_scales.js";
+import { drawBar, drawMark } from "./heat_bar.js";
+import { NumberScale, endsOf } from "./scales.js";
 
 const MOVES = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowDown: [0, -1], ArrowUp: [0, 1] };
 const WIDE = 20; // times the least: from here on the colours are logarithmic
-const BAR_PX = 14;
-const LEAST_MARK_PX = 9;
-const FONT = '11px system-ui, -apple-system, "Segoe UI", sans-serif';
+const [LEAST_MARK_PX, MOST_MARK_PX] = [9, 16];
+const MARKS = [
+  { name: "ended", text: "ended" },
+  { name: "refused", text: "refused" },
+];
 
 /** What a cell with several runs shows of those that are done. */
 export const GATHERINGS = {
@@ -22,8 +25,8 @@ export class HeatMap {
   keys = [];
 
   /** @param {{run, state, x, y, value}[]} points values as shown @param {object} x @param {object} y @param {object} figure described,
-   *  see columns.js @param {string} gathering */
-  constructor(points, x, y, figure, gathering) {
+   *  see columns.js @param {string} gathering @param {boolean} hasSeveral whether a cell may have several runs */
+  constructor(points, x, y, figure, gathering, hasSeveral) {
     this.x = { ...x, scale: cellScale(points.map((point) => point.x), x) };
     this.y = { ...y, scale: cellScale(points.map((point) => point.y), y) };
     this.figure = figure;
@@ -32,7 +35,7 @@ export class HeatMap {
     this.places = new Map();
     for (const point of points) this.#put(point);
     for (const cell of this.cells.values()) this.#gather(cell);
-    this.hasSeveral = points.length > this.cells.size;
+    this.hasSeveral = hasSeveral || points.length > this.cells.size;
     const values = [...this.cells.values()].map(({ value }) => value).filter((value) => value !== null);
     const [low, high] = endsOf(values);
     this.colours = values.length ? new NumberScale(low, high, low > 0 && high > WIDE * low) : null;
@@ -60,48 +63,23 @@ export class HeatMap {
   }
 
   paint(ctx, { left, top, width, height }, palette) {
-    const [wide, tall] = [width / this.x.scale.size, height / this.y.scale.size];
+    const [columns, rows] = [this.x.scale.size, this.y.scale.size];
+    const [edgeX, edgeY] = [(i) => Math.round(left + (i * width) / columns), (j) => Math.round(top + height - (j * height) / rows)];
+    const least = Math.min(width / columns, height / rows);
     for (const { i, j, value, ended, refused } of this.cells.values()) {
-      const [x0, y0] = [left + i * wide, top + height - (j + 1) * tall];
+      const [x0, y0, x1, y1] = [edgeX(i), edgeY(j + 1), edgeX(i + 1), edgeY(j)];
       ctx.fillStyle = value === null ? palette.colour("track") : sequentialColour(this.colours.at(value));
-      ctx.fillRect(x0, y0, wide + 0.6, tall + 0.6);
-      const isMarked = value === null || Math.min(wide, tall) >= LEAST_MARK_PX;
-      if (isMarked && (ended || refused)) cross(ctx, x0 + wide / 2, y0 + tall / 2, Math.min(wide, tall, 16) / 3.2, Boolean(ended), value, palette);
+      ctx.fillRect(x0, y0, x1 - x0, y1 - y0);
+      const isMarked = value === null || least >= LEAST_MARK_PX;
+      if (isMarked && (ended || refused))
+        drawMark(ctx, (x0 + x1) / 2, (y0 + y1) / 2, Math.min(least, MOST_MARK_PX) / 3.2, ended ? "ended" : "refused", value === null ? palette.colour("text") : "#fff");
     }
   }
 
-  legend(ctx, { left, top, width, height }, palette) {
-    const at = left + width + 26;
-    const tall = height - 58;
-    ctx.font = FONT;
-    ctx.textBaseline = "middle";
-    ctx.textAlign = "left";
+  legend(ctx, box, palette) {
     const cells = [...this.cells.values()];
-    const words = [
-      [true, "ended"],
-      [false, "refused"],
-    ].filter(([isEnded]) => cells.some(({ ended, refused }) => (isEnded ? ended : refused)));
-    words.forEach(([isEnded, text], place) => {
-      const y = top + tall + 26 + 22 * place;
-      ctx.fillStyle = palette.colour("track");
-      ctx.fillRect(at, y - 8, BAR_PX, 16);
-      cross(ctx, at + BAR_PX / 2, y, 4, isEnded, null, palette);
-      ctx.fillStyle = palette.colour("axis-text");
-      ctx.fillText(text, at + BAR_PX + 5, y);
-    });
-    if (!this.colours) return;
-    for (let y = 0; y < tall; y += 1) {
-      ctx.fillStyle = sequentialColour(1 - y / tall);
-      ctx.fillRect(at, top + y, BAR_PX, 1.5);
-    }
-    ctx.fillStyle = palette.colour("axis-text");
-    for (const { at: share, text } of this.colours.ticks(Math.max(2, Math.floor(tall / 50)))) ctx.fillText(text, at + BAR_PX + 5, top + (1 - share) * tall);
-    ctx.save();
-    ctx.translate(at - 9, top + tall / 2);
-    ctx.rotate(-Math.PI / 2);
-    ctx.textAlign = "center";
-    ctx.fillText(fitted(ctx, this.title, tall), 0, 0);
-    ctx.restore();
+    const marks = MARKS.filter(({ name }) => cells.some((cell) => cell[name]));
+    drawBar(ctx, box, this.colours, this.title, marks, palette);
   }
 
   hit(u, v) {
@@ -125,7 +103,7 @@ export class HeatMap {
   words({ i, j, value, runs, ended, refused, run }) {
     const side = ({ label, unit, scale }, cell) => `${label} ${written(scale.words(cell))} ${unit}`.trim();
     const lines = [side(this.x, i), side(this.y, j)];
-    if (value !== null) lines.push(`${this.hasSeveral ? `${this.gathering.title} ` : ""}${this.figure.label} ${compact(value)} ${this.figure.unit}`.trim());
+    if (value !== null) lines.unshift(`${this.hasSeveral ? `${this.gathering.title} ` : ""}${this.figure.label} ${compact(value)} ${this.figure.unit}`.trim());
     if (runs.length > 1) lines.push(`${runs.length} runs${ended ? `, ${ended} ended early` : ""}${refused ? `, ${refused} refused` : ""}`);
     else lines.push(`run ${run}${ended ? ", ended early" : ""}${refused ? ", refused" : ""}`);
     return lines;
@@ -146,11 +124,4 @@ export class HeatMap {
 
 export function written(value) {
   return typeof value === "number" ? compact(value) : String(value);
-}
-
-function cross(ctx, x, y, reach, isEnded, value, palette) {
-  ctx.lineWidth = 1.5;
-  ctx.strokeStyle = value === null ? palette.colour("text") : "#fff";
-  line(ctx, x - reach, y + reach, x + reach, y - reach);
-  if (isEnded) line(ctx, x - reach, y - reach, x + reach, y + reach);
 }

@@ -2,7 +2,7 @@ import { element } from "../element.js";
 import { Segmented } from "../parameters/segmented.js";
 import { GATHERINGS, HeatMap } from "./heat_map.js";
 import { Histogram } from "./histogram.js";
-import { WordCells } from "./scales.js";
+import { cellScale } from "./cell_scales.js";
 import { Scatter } from "./scatter.js";
 
 const KINDS = [
@@ -31,7 +31,7 @@ export class PictureChoice {
     this.gathering = this.#select("Of several runs in a cell");
     this.gathering.append(...Object.entries(GATHERINGS).map(([name, { title }]) => new Option(title, name)));
     this.labels = new Map([this.x, this.y, this.figure, this.group, this.gathering].map((select, i) => [select, element("label", {}, LABELS[i], select)]));
-    this.root = element("div", { class: "picture-choice" }, this.kinds.root, ...this.labels.values());
+    this.root = element("div", { class: "picture-choice" }, this.kinds.root, element("div", { class: "picture-columns" }, ...this.labels.values()));
     this.#arrange();
   }
 
@@ -44,7 +44,7 @@ export class PictureChoice {
     this.kind = columns.paths.length > 1 ? "map" : columns.paths.length ? "scatter" : "histogram";
     fill(this.figure, columns, columns.figures, FIRST_FIGURE);
     const words = columns.paths.filter((path) => columns.describe(path).options);
-    this.group.replaceChildren(...words.map((path) => new Option(columns.describe(path).title, path)), new Option("one", ""));
+    this.group.replaceChildren(...words.map((path) => new Option(columns.describe(path).label, path)), new Option("one", ""));
     this.group.value = words[0] ?? "";
     this.#offerAxes();
     this.#arrange();
@@ -75,12 +75,14 @@ export class PictureChoice {
     const [x, y] = [shown(this.x), shown(this.y)];
     if (this.kind === "scatter") {
       const told = this.group.value ? table.column(this.group.value) : [];
-      const groups = this.group.value ? new WordCells([...new Set(told)], describe(this.group).options) : null;
+      const groups = this.group.value ? cellScale(told, describe(this.group)) : null;
       return new Scatter(runs.map((run, i) => ({ run, state: states[i], x: x[i], y: y[i], group: told[i] })), describe(this.x), describe(this.y), groups);
     }
     const values = shown(this.figure);
     const points = runs.map((run, i) => ({ run, state: states[i], x: x[i], y: y[i], value: typeof values[i] === "number" ? values[i] : null }));
-    const map = new HeatMap(points, describe(this.x), describe(this.y), describe(this.figure), this.gathering.value);
+    const sides = [describe(this.x), describe(this.y)];
+    const hasSeveral = this.columns.paths.length > 2 || sides.some(({ varied }) => varied && !varied.values);
+    const map = new HeatMap(points, ...sides, describe(this.figure), this.gathering.value, hasSeveral);
     this.labels.get(this.gathering).hidden = !map.hasSeveral;
     return map;
   }
@@ -124,6 +126,6 @@ export class PictureChoice {
 /** Keep what was chosen where it is still offered, unless the choice is fresh. */
 function fill(select, columns, names, first, isFresh = false) {
   const kept = !isFresh && names.includes(select.value) ? select.value : first;
-  select.replaceChildren(...names.map((name) => new Option(columns.describe(name).title, name)));
+  select.replaceChildren(...names.map((name) => new Option(columns.describe(name).label, name)));
   select.value = names.includes(kept) ? kept : names[0];
 }

@@ -18,6 +18,7 @@ const MOST_LEFT = 0.25; // of the width, for the words on an axis
  */
 export class PlotCanvas {
   #spot = null;
+  #pointer = null; // the latest event of a pointer over it
 
   /** @param {Palette} palette @param {(run: number) => void} chosen */
   constructor(palette, chosen) {
@@ -26,14 +27,14 @@ export class PlotCanvas {
     this.picture = null;
     this.run = null;
     this.tip = new Tip();
-    this.readout = element("output", { class: "result-readout" });
+    this.readout = element("output", { class: "result-readout", "data-idle": "A click shows the run there; arrow keys and Enter do so, too." });
     this.canvas = element("canvas", {
       class: "map-canvas batch-canvas",
       tabindex: "0",
       role: "img",
       "aria-label": "No results yet",
       pointermove: (event) => this.#point(event),
-      pointerleave: () => this.tip.hide(),
+      pointerleave: () => this.#leave(),
       click: (event) => this.#choose(this.#spotAt(event)),
       keydown: (event) => this.#key(event),
       blur: () => this.#read(null),
@@ -42,14 +43,15 @@ export class PlotCanvas {
     new ResizeObserver(() => this.draw()).observe(this.root);
   }
 
-  /** @param {object|null} picture */
-  show(picture) {
+  /** Show a picture; the run that was read in the one before is read in this one, too. @param {object|null} picture
+   *  @param {boolean} [hasRuns] whether there is something to click */
+  show(picture, hasRuns = true) {
+    const run = this.#spot === null ? null : this.picture.run(this.#spot);
     this.picture = picture;
-    this.#spot = null;
-    this.tip.hide();
-    setText(this.readout, "");
     this.canvas.setAttribute("aria-label", picture ? `${picture.about} Arrow keys read it, Enter shows the run.` : "No results yet");
-    this.draw();
+    this.readout.classList.toggle("is-idle", picture !== null && hasRuns);
+    this.#read(run === null || !picture ? null : picture.spotOf(run));
+    if (this.#pointer) this.#point(this.#pointer);
   }
 
   /** Mark the run that is shown. */
@@ -109,7 +111,13 @@ export class PlotCanvas {
     return u < 0 || u > 1 || v < 0 || v > 1 ? null : this.picture.hit(u, v, this.box);
   }
 
+  #leave() {
+    this.#pointer = null;
+    this.tip.hide();
+  }
+
   #point(event) {
+    this.#pointer = event;
     const spot = this.#spotAt(event);
     this.canvas.style.cursor = spot === null ? "default" : "pointer";
     this.tip.show(event.clientX, event.clientY, spot === null ? [] : this.picture.words(spot));

@@ -1,6 +1,7 @@
 import { written } from "./heat_map.js";
 import { crossed } from "./plot_key.js";
-import { plainScale } from "./scales.js";
+import { cellScale } from "./cell_scales.js";
+import { NumberScale } from "./scales.js";
 
 const NEAR_PX = 12;
 const MANY = 2000;
@@ -17,8 +18,8 @@ export class Scatter {
   constructor(points, x, y, groups = null) {
     this.groups = groups;
     const there = points.filter((point) => point.x !== null && point.y !== null && point.state !== "refused");
-    this.x = { ...x, scale: plainScale(there.map((point) => point.x), x) };
-    this.y = { ...y, scale: plainScale(there.map((point) => point.y), y) };
+    this.x = { ...x, scale: axisScale(there.map((point) => point.x), x) };
+    this.y = { ...y, scale: axisScale(there.map((point) => point.y), y) };
     const placed = ([u, v]) => Number.isFinite(u) && Number.isFinite(v);
     this.points = there.map((point) => ({ ...point, at: [this.x.scale.at(point.x), this.y.scale.at(point.y)] })).filter(({ at }) => placed(at));
     this.points.sort((a, b) => a.at[0] - b.at[0] || a.at[1] - b.at[1]);
@@ -74,9 +75,9 @@ export class Scatter {
   }
 
   words({ run, state, x, y, group }) {
-    const side = ({ label, unit }, value) => `${label} ${written(value)} ${unit}`.trim();
-    const own = this.groups ? [this.groups.texts[this.groups.values.indexOf(group)] ?? String(group)] : [];
-    return [...own, side(this.x, x), side(this.y, y), `run ${run}${state === "ended" ? ", ended early" : ""}`];
+    const side = ({ label, unit, scale }, value) => `${label} ${written(scale.textOf?.(value) ?? value)} ${unit}`.trim();
+    const own = this.groups ? [this.groups.textOf(group)] : [];
+    return [...own, side(this.y, y), side(this.x, x), `run ${run}${state === "ended" ? ", ended early" : ""}`];
   }
 
   run({ run }) {
@@ -86,4 +87,12 @@ export class Scatter {
   spotOf(run) {
     return this.ofRun.get(run) ?? null;
   }
+}
+
+/** Around the values, and around all that the batch may take there: so the axis stays as it is while results come in. */
+function axisScale(values, described) {
+  const { varied, isLogarithmic } = described;
+  const there = values.filter((value) => value !== null);
+  if ([...there, ...(varied?.values ?? [])].some((value) => typeof value !== "number")) return cellScale(there, described);
+  return NumberScale.around([...there, varied?.low, varied?.high].filter(Number.isFinite), isLogarithmic, !varied);
 }

@@ -27,6 +27,11 @@ export function isActive({ state }) {
   return state === "queued" || state === "running";
 }
 
+/** @returns {boolean} whether no part of it is there yet: perhaps its code is compiled first */
+export function isPreparing({ state, progress }) {
+  return state === "running" && !progress?.done;
+}
+
 /** @returns {string} how its runs ended: "430 done, 8 ended early, 3 refused" */
 export function countsWords(counts) {
   const { done = 0, ended = 0, refused = 0 } = counts ?? {};
