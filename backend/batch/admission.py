@@ -10,8 +10,9 @@ from backend.batch.engine import Engine, OutOfReach
 from backend.batch.limits import Limits
 from backend.batch.times import Times, text_of
 from backend.compute.pool import JobFailedError, JobRefusedError, Jobs
-from backend.problem import FieldError, Problem, refused
+from backend.problem import Problem, refused
 from vssea_core.batch.document import Batch
+from vssea_core.field_errors import FieldError
 
 PLAN_LIMIT_S = 120.0
 Document = dict[str, Any]

@@ -68,7 +68,7 @@ class BatchFolder:
 
     def parts(self) -> list[int]:
         """Return the numbers of the parts that are there, in order."""
-        found = (PART.fullmatch(path.name) for path in self.path.iterdir())
+        found = (PART.fullmatch(path.name) for path in self.path.glob("part-*"))
         return sorted(int(match[1]) for match in found if match)
 
     def put_aside(self, number: int) -> None:
