@@ -73,6 +73,7 @@ async def _run(document: str, output: Path, workers: int, address: str | None, o
             await engine.connect()
             workers = engine.threads
         plan = plan_batch(document, workers)
+        await asyncio.sleep(0)  # Ctrl+C meanwhile ends it before there is a folder
         if only_estimate:
             typer.echo(json.dumps(estimate_of(plan), indent=2, ensure_ascii=False))
             return

@@ -21,7 +21,7 @@ LONG: frozenset[str] = frozenset()
 MEDIA_TYPES = {
     "parquet": "application/vnd.apache.parquet",
     "csv": "text/csv; charset=utf-8",
-    "arrow": "application/vnd.apache.arrow.file",
+    "arrow": "application/vnd.apache.arrow.stream",
 }
 
 
@@ -139,7 +139,7 @@ def _write(form: str, schema: pa.Schema, tables: Iterable[pa.Table], path: str) 
     if form == "parquet":
         writer: Any = pq.ParquetWriter(path, schema, compression="zstd")
     elif form == "arrow":
-        writer = pyarrow.ipc.new_file(path, schema)
+        writer = pyarrow.ipc.new_stream(path, schema)
     else:
         writer = pyarrow.csv.CSVWriter(path, schema)
     with writer:

@@ -89,7 +89,7 @@ def test_pages_and_files_hold_the_same(sweep: tuple[httpx.Client, dict[str, Any]
     http, found = sweep
     place = f"{BATCHES}/{found['id']}/results"
     whole = pq.read_table(io.BytesIO(http.get(f"{place}.parquet").content))
-    assert pa.ipc.open_file(io.BytesIO(http.get(f"{place}.arrow").content)).read_all().equals(whole)
+    assert pa.ipc.open_stream(io.BytesIO(http.get(f"{place}.arrow").content)).read_all().equals(whole)
     text = pa.csv.read_csv(
         io.BytesIO(http.get(f"{place}.csv").content),
         convert_options=pa.csv.ConvertOptions(column_types=whole.schema, strings_can_be_null=False),
@@ -202,7 +202,7 @@ def test_trajectories_are_those_of_single_runs(http_batches: httpx.Client) -> No
     place = f"{BATCHES}/{found['id']}"
     table = pq.read_table(io.BytesIO(http_batches.get(f"{place}/trajectories.parquet").content))
     assert (
-        pa.ipc.open_file(io.BytesIO(http_batches.get(f"{place}/trajectories.arrow").content)).read_all().equals(table)
+        pa.ipc.open_stream(io.BytesIO(http_batches.get(f"{place}/trajectories.arrow").content)).read_all().equals(table)
     )
     assert table.column_names == ["run", "time", "link_position", "motor_torque"]
     assert table["run"].to_pylist() == np.repeat(np.arange(20), 40).tolist()

@@ -121,6 +121,9 @@ def test_what_cannot_be_is_said_while_it_is_typed(running: Server, open_page: Op
     vary(page, "link inertia", LINK)
     page.get_by_label("link inertia, lowest").fill("one")
     expect(page.locator(".estimate .form-problem")).to_contain_text("expected a number")
+    page.get_by_role("button", name="Start").click()
+    expect(page.get_by_label("link inertia, lowest")).to_be_focused()
+    expect(page.locator(".batch-form .form-problem:visible")).to_have_count(1)
     page.get_by_label("link inertia, lowest").fill("-1")
     expect(page.locator(".estimate .form-problem")).to_contain_text("log grid needs positive ends")
     page.locator(".variation").get_by_role("radio", name="List").click()
@@ -245,6 +248,29 @@ def test_runs_that_ended_early_are_marked_and_say_why(running: Server, open_page
     expect(page.locator("#batch-run")).to_have_attribute("data-simulated", run)
 
 
+def test_the_page_knows_the_values_of_a_batch_before_it_runs(running: Server, open_page: OpenPage) -> None:
+    """Of every kind of variation, as the server computes them: a cell for each, from the first run on."""
+    scenario = nominal(running)
+    seeds = grid("seed", 0, 10, 4)
+    ratios = grid(LINK, 0.5, 2.0, 7) | {"spacing": "log", "factor": True}
+    listed = {"kind": "list", "path": BANDWIDTH, "values": [80.0, 40.0, 120.0]}
+    batch = computed(running, "of every kind", scenario, seeds, ratios, listed)
+    document = running.get(f"/api/batches/{batch}/document").json()
+    found = running.get(f"/api/batches/{batch}/results?limit=84&columns=seed,{LINK},{BANDWIDTH}").json()
+    page = open_page(running)
+    sizes = page.evaluate(
+        """async ([document, rows]) => {
+            const { variedValues } = await import('/app/batch/varied_values.js');
+            const { cellScale } = await import('/app/batch/cell_scales.js');
+            const known = [...variedValues(document, (path) => path === 'seed').values()];
+            const size = (values, varied) => cellScale(values, { varied, options: null, isLogarithmic: null }).size;
+            return known.flatMap((varied, i) => rows.map((row) => size([row[i]], varied)));
+        }""",
+        [document, found["rows"]],
+    )
+    assert sizes == [4] * 84 + [7] * 84 + [3] * 84
+
+
 def test_a_batch_under_way_is_cancelled_and_deleted(running: Server, open_page: OpenPage, mapped: str) -> None:
     page = open_page(running)
     batch_view(page)
@@ -324,29 +350,6 @@ def test_the_axes_of_a_map_stay_as_they_are_while_results_come_in(
         assert not page.evaluate(IS_DRAWN_ABOVE), "more than the first runs are drawn"
 
 
-def test_the_page_knows_the_values_of_a_batch_before_it_runs(running: Server, open_page: OpenPage) -> None:
-    """Of every kind of variation, as the server computes them: a cell for each, from the first run on."""
-    scenario = nominal(running)
-    seeds = grid("seed", 0, 10, 4)
-    ratios = grid(LINK, 0.5, 2.0, 7) | {"spacing": "log", "factor": True}
-    listed = {"kind": "list", "path": BANDWIDTH, "values": [80.0, 40.0, 120.0]}
-    batch = computed(running, "of every kind", scenario, seeds, ratios, listed)
-    document = running.get(f"/api/batches/{batch}/document").json()
-    found = running.get(f"/api/batches/{batch}/results?limit=84&columns=seed,{LINK},{BANDWIDTH}").json()
-    page = open_page(running)
-    sizes = page.evaluate(
-        """async ([document, rows]) => {
-            const { variedValues } = await import('/app/batch/varied_values.js');
-            const { cellScale } = await import('/app/batch/cell_scales.js');
-            const known = [...variedValues(document, (path) => path === 'seed').values()];
-            const size = (values, varied) => cellScale(values, { varied, options: null, isLogarithmic: null }).size;
-            return known.flatMap((varied, i) => rows.map((row) => size([row[i]], varied)));
-        }""",
-        [document, found["rows"]],
-    )
-    assert sizes == [4] * 84 + [7] * 84 + [3] * 84
-
-
 def test_no_legend_of_a_run_is_cut(running: Server, open_page: OpenPage, mapped: str) -> None:
     page = open_page(running)
     batch_view(page, mapped)
@@ -392,6 +395,27 @@ def test_the_list_and_start_stay_in_sight_however_long_the_form_is(
     expect(page.locator(".batch-title[aria-current]")).to_be_in_viewport(ratio=1.0)
     fold.click()
     expect(page.locator(".variation")).to_have_count(4)
+
+
+def test_the_list_is_one_stop_of_the_tab_key_and_arrow_keys_move_in_it(
+    running: Server, open_page: OpenPage, mapped: str, partly_refused: str
+) -> None:
+    page = open_page(running)
+    batch_view(page, mapped)
+    titles = page.locator(".batch-title")
+    assert titles.count() > 1
+    page.get_by_role("button", name="New batch").focus()
+    page.keyboard.press("Tab")
+    expect(page.locator(f".batch[data-id='{mapped}'] .batch-title")).to_be_focused()
+    page.keyboard.press("End")
+    expect(titles.last).to_be_focused()
+    page.keyboard.press("ArrowUp")
+    expect(titles.nth(titles.count() - 2)).to_be_focused()
+    page.keyboard.press("Tab")
+    expect(page.locator(".batch-list :focus")).to_have_text("Delete")
+    page.keyboard.press("Tab")
+    expect(page.locator(".batch-list :focus")).to_have_count(0)
+    expect(page.locator("#batch-main :focus")).to_have_count(1)
 
 
 def test_results_that_cannot_be_fetched_are_told_and_fetched_again(

@@ -130,7 +130,8 @@ export class BatchForm {
       sentence = refusal.message;
     }
     this.button.disabled = false;
-    this.#say(sentence);
+    if (sentence) (this.body.querySelector('[aria-invalid="true"]') ?? this.button).focus();
+    this.#say(this.estimate.says(sentence) ? "" : sentence);
   }
 
   #say(sentence) {

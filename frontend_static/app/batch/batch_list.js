@@ -1,5 +1,6 @@
 import { arrange, element, setText } from "../element.js";
 import { when } from "../presets/when.js";
+import { OneStop } from "./one_stop.js";
 import { showProgress } from "./progress.js";
 import { STATES, countWords, isActive, isPreparing, rateWords, runsWords, spanWords } from "./words.js";
 
@@ -15,9 +16,11 @@ export class BatchList {
     this.ask = ask;
     this.open = open;
     this.list = element("ol", { class: "batch-list" });
+    this.stop = new OneStop(this.list);
     this.problem = element("p", { class: "form-problem", role: "status", hidden: true });
     this.empty = element("p", { class: "hint" }, "Loading…");
-    this.root = element("section", { class: "side-panel batch-list-panel", "aria-label": "Batches" }, element("h2", {}, "Batches"), this.problem, this.list, this.empty);
+    this.title = element("h2", {}, "Batches");
+    this.root = element("section", { class: "side-panel batch-list-panel", "aria-label": "Batches" }, this.title, this.problem, this.list, this.empty);
     batches.addEventListener("list", () => this.#show());
     batches.addEventListener("problem", () => {
       setText(this.problem, batches.problem);
@@ -29,16 +32,22 @@ export class BatchList {
   mark(id) {
     const isOther = id !== this.marked;
     this.marked = id;
-    for (const [own, line] of this.#lines) line.mark(own === id);
+    this.#mark();
     if (isOther) this.#reveal();
+  }
+
+  #mark() {
+    for (const [own, line] of this.#lines) line.mark(own === this.marked);
+    this.stop.arrange(this.#lines.get(this.marked)?.root ?? null);
   }
 
   /** Bring the marked one in sight, in the list alone: the page stays where it is. */
   #reveal() {
     const line = this.#lines.get(this.marked)?.root;
     if (!line) return;
-    const [box, own] = [this.root.getBoundingClientRect(), line.getBoundingClientRect()];
-    this.root.scrollTop += Math.min(0, own.top - box.top) + Math.max(0, own.bottom - box.bottom);
+    const [top, bottom] = [this.title.getBoundingClientRect().bottom, this.root.getBoundingClientRect().bottom];
+    const own = line.getBoundingClientRect();
+    this.root.scrollTop += Math.min(0, own.top - top) + Math.max(0, own.bottom - bottom);
   }
 
   #show() {
@@ -52,7 +61,7 @@ export class BatchList {
     arrange(this.list, list.map(({ id }) => this.#lines.get(id).root));
     setText(this.empty, list.length ? `The newest ${list.length} of ${total}.` : "None yet. Choose fields above and start one: it is kept here with its results.");
     this.empty.hidden = list.length > 0 && total <= list.length;
-    for (const [own, line] of this.#lines) line.mark(own === this.marked);
+    this.#mark();
     if (!this.#isListed && list.length) this.#reveal();
     this.#isListed = list.length > 0;
     if (this.#awaited !== null) this.focus(this.#awaited);

@@ -46,10 +46,10 @@ export class BatchView {
     const isShown = this.views.shown === VIEW;
     this.batches.isShown = isShown;
     this.form.isShown = isShown;
-    if (!isShown || !this.schema) return;
-    this.page.open(this.views.path || null, this.schema);
-    this.list.mark(this.views.path);
+    if (!isShown) return;
     if (this.views.path !== this.path) this.#turn(this.views.path);
+    this.list.mark(this.views.path);
+    if (this.schema) this.page.open(this.views.path || null, this.schema);
   }
 
   /** Where there is little room, the form gives way to the list, and both to the results. */

@@ -33,6 +33,11 @@ export class Estimate {
     this.#show(null, sentence);
   }
 
+  /** @returns {boolean} whether this is what it shows */
+  says(sentence) {
+    return this.problem.textContent === sentence;
+  }
+
   /** Ask the server, once nobody types. */
   ask(document) {
     this.#forget();
@@ -56,6 +61,7 @@ export class Estimate {
     setText(this.size, told ? sizeWords(told.bytes) : "–");
     setText(this.problem, problem || refusedWords(told?.refused ?? []));
     this.problem.hidden = this.problem.textContent === "";
+    this.figures.hidden = problem !== "";
     const few = (told?.refused ?? []).slice(0, REFUSED_SHOWN);
     this.refused.replaceChildren(...few.map((sentence) => element("li", {}, sentence)));
     this.refused.hidden = few.length === 0;

@@ -68,6 +68,7 @@ export class RunPanel {
     this.#fill(this.values, []);
     this.#fill(this.figures, []);
     this.source.clear();
+    this.charts.hidden = false;
     this.#can(false);
     try {
       const found = await batchRoutes.run(batch.id, run);
@@ -75,7 +76,9 @@ export class RunPanel {
       this.#show(found, columns);
       if (found.state !== "refused") await this.#simulate(abort);
     } catch (refusal) {
-      if (!abort.signal.aborted) setText(this.note, refusal.message);
+      if (abort.signal.aborted) return;
+      setText(this.note, refusal.message);
+      this.charts.hidden = true;
     }
   }
 
@@ -145,6 +148,5 @@ export class RunPanel {
 
   #say(words) {
     setText(this.words, words);
-    this.words.hidden = words === "";
   }
 }
