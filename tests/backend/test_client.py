@@ -274,6 +274,7 @@ def test_the_rest_of_the_routes_is_asked_as_the_protocol_says(fake: FakeServer, 
     fake.on("GET /api/batches/b1/document", Answer({"name": "as sent"}))
     fake.on("GET /api/batches/b1/runs/3", Answer({"run": 3}))
     fake.on("POST /api/batches/b1/cancel", Answer(BATCH))
+    fake.on("POST /api/batches/b1/resume", Answer(BATCH))
     fake.on("DELETE /api/batches/b1", Answer(status=204))
     fake.on("GET /api/scenarios/realistic", Answer({"name": "realistic"}))
     fake.on("POST /api/simulate?trajectory=none&allow_unstable=false", Answer({"metrics": {}}))
@@ -282,6 +283,7 @@ def test_the_rest_of_the_routes_is_asked_as_the_protocol_says(fake: FakeServer, 
     assert client.batches.document("b1") == {"name": "as sent"}
     assert client.batches.run("b1", 3) == {"run": 3}
     assert client.batches.cancel("b1") == BATCH
+    assert client.batches.resume("b1") == BATCH
     client.batches.delete("b1")
     assert client.scenario("realistic") == {"name": "realistic"}
     assert client.metrics(client.scenario("realistic")) == {"metrics": {}}
