@@ -1,20 +1,16 @@
 """Batches over REST: estimated, started, watched, ended, resumed; their results by pages or whole. Workers plan and read."""
 
-import asyncio
-import json
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Header, Query, Request, Response
 from fastapi.responses import FileResponse
-from pydantic import ValidationError
 
 from backend.api.reading import channels_in, named_file, read
-from backend.api.resources import body_named, body_of
+from backend.api.resources import body_named, content_of
 from backend.batch.batches import Batches
 from backend.batch.catalogue import Row
 from backend.compute.pool import Pool
-from backend.problem import Problem, from_validation
-from vssea_core.batch.document import Batch
+from backend.problem import Problem
 
 LARGEST_DOCUMENT = 4_000_000
 EXPORT_LIMIT_S = 900.0
@@ -31,9 +27,7 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
     @router.post("/estimate", openapi_extra=body_named("Batch"))
     async def estimate(request: Request) -> Document:
         """Say how many runs, seconds and bytes a batch would take, and which of some runs would be refused."""
-        plan = await batches.estimate(await batch_of(request))
-        told = ("runs", "samples", "in_lanes", "seconds", "bytes", "paths", "columns", "first", "refused")
-        return {name: plan[name] for name in told}
+        return await batches.estimate(await content_of(request, LARGEST_DOCUMENT))
 
     @router.post("", status_code=201, openapi_extra=body_named("Batch"))
     async def create(
@@ -42,7 +36,7 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
         key: Annotated[str | None, Header(alias="Idempotency-Key", max_length=200)] = None,
     ) -> Document:
         """Start a batch, or return the one that was started with the same Idempotency-Key."""
-        row, is_new = await batches.create(await batch_of(request), key)
+        row, is_new = await batches.create(await content_of(request, LARGEST_DOCUMENT), key)
         response.status_code = 201 if is_new else 200
         response.headers["Location"] = f"/api/batches/{row.id}"
         return await batches.document(row.id)
@@ -64,7 +58,8 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
     @router.get("/{batch}/document")
     async def document(batch: str) -> FileResponse:
         """Return the document that a batch was started with."""
-        return FileResponse(batches.folder_of(await batches.row(batch)).document_path, media_type="application/json")
+        path = await batches.document_path(await batches.row(batch))
+        return FileResponse(path, media_type="application/json")
 
     @router.post("/{batch}/cancel")
     async def cancel(batch: str) -> Document:
@@ -108,9 +103,9 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
     async def run(batch: str, number: int) -> Document:
         """Return values, state and figures of one run; `waiting` until it is computed."""
         row = await found(batch, number)
-        files = batches.folder_of(row)
-        values = await read(batches.plans.run("values_of", str(files.document_path), number), "batch")
-        kept = await read(batches.results.run("row", str(files.path), number, number // row.part_size), "batch")
+        path = await batches.document_path(row)
+        values = await read(batches.plans.run("values_of", str(path), number), "batch")
+        kept = await read(batches.results.run("row", str(path.parent), number, number // row.part_size), "batch")
         known = {} if kept is None else {name: value for name, value in kept.items() if name not in values}
         return {"run": number, "values": values, "state": "waiting", **known}
 
@@ -147,16 +142,7 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
         return row
 
     async def scenario_of(batch: str, number: int) -> Any:
-        files = batches.folder_of(await found(batch, number))
-        return await read(batches.plans.run("scenario_of", str(files.document_path), number), "batch")
+        path = await batches.document_path(await found(batch, number))
+        return await read(batches.plans.run("scenario_of", str(path), number), "batch")
 
     return router
-
-
-async def batch_of(request: Request) -> Batch:
-    """Return the body of a request as a batch. Raises Problem."""
-    body = await body_of(request, LARGEST_DOCUMENT)
-    try:
-        return await asyncio.to_thread(lambda: Batch.model_validate_json(json.dumps(body)))
-    except ValidationError as error:
-        raise from_validation(error, Batch, consequence="No batch was started.") from error

@@ -11,7 +11,8 @@ from fastapi import APIRouter, Query, Request
 
 from backend.api.reading import document_of, number_of, read
 from backend.api.resources import body_named, body_of
-from backend.compute.pool import Hearer, JobCancelledError, Pool
+from backend.compute.exchange import Hearer
+from backend.compute.pool import JobCancelledError, Pool
 from backend.problem import Problem, refused
 from backend.recordings.layout import FORMAT
 from backend.recordings.library import Library

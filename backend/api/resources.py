@@ -23,15 +23,20 @@ LARGEST_BODY = 1_000_000
 Document = dict[str, Any]
 
 
-async def body_of(request: Request, largest: int = LARGEST_BODY) -> Any:
-    """Return the JSON body of a request, {} if it is empty. Raises Problem."""
+async def content_of(request: Request, largest: int = LARGEST_BODY) -> bytes:
+    """Return the body of a request. Raises Problem if it is larger than that."""
     parts, size = [], 0
     async for part in request.stream():
         size += len(part)
         if size > largest:
             raise Problem(413, "Too large", f"The body is larger than {largest} bytes; expected one JSON document.")
         parts.append(part)
-    content = b"".join(parts)
+    return b"".join(parts)
+
+
+async def body_of(request: Request, largest: int = LARGEST_BODY) -> Any:
+    """Return the JSON body of a request, {} if it is empty. Raises Problem."""
+    content = await content_of(request, largest)
     if not content.strip():
         return {}
     try:

@@ -1,17 +1,17 @@
 """From a document to a batch that may wait for its turn, or why it may not."""
 
-import hashlib
 import secrets
 from datetime import datetime
 from typing import Any
 
+from backend.batch.asked import Asked
 from backend.batch.catalogue import Row
 from backend.batch.engine import Engine, OutOfReach
+from backend.batch.estimate import estimate_of, why_refused
 from backend.batch.limits import Limits
 from backend.batch.times import Times, text_of
 from backend.compute.pool import JobFailedError, JobRefusedError, Jobs
 from backend.problem import Problem, refused
-from vssea_core.batch.document import Batch
 from vssea_core.field_errors import FieldError
 
 PLAN_LIMIT_S = 120.0
@@ -24,45 +24,57 @@ class Admission:
     def __init__(self, limits: Limits, engine: Engine, plans: Jobs, times: Times) -> None:
         self._limits, self._engine, self._plans, self._times = limits, engine, plans, times
 
-    async def estimate(self, batch: Batch) -> Document:
-        """Return what a batch would take. Raises Problem if it makes no sense or is too large."""
-        self._limits.check_runs(batch)
-        return await self._planned(batch)
+    async def read(self, body: bytes) -> Asked:
+        """Return the batch in the body of a request. Raises Problem if there is none."""
+        found: Asked | Problem = await self._answer("read_batch", body)
+        if isinstance(found, Problem):
+            raise found
+        return found
 
-    async def row(self, batch: Batch, digest: str, key: str | None) -> Row:
+    async def estimate(self, asked: Asked) -> Document:
+        """Return what a batch would take. Raises Problem if it makes no sense or is too large."""
+        self._limits.check_runs(asked.runs)
+        return estimate_of(await self._planned(asked))
+
+    async def row(self, asked: Asked, key: str | None) -> Row:
         """Return a batch that may wait for its turn. Raises Problem if it may not."""
-        self._limits.check_runs(batch)
-        plan = await self._planned(batch)
-        if plan["all_refused"]:
-            reason = plan["refused"][0]
-            raise refused(f"No run of this batch can start. {reason}.", FieldError("vary", None, reason))
+        self._limits.check_runs(asked.runs)
+        plan = await self._planned(asked)
+        if why := why_refused(plan):
+            raise _refused(why)
         self._limits.check_bytes(plan["bytes"])
         now = self._times.now()
         facts = {
-            "description": batch.description, "paths": plan["paths"], "columns": plan["columns"],
-            "trajectories": batch.keep.trajectories, "engine": self._engine.name,
+            "description": asked.description, "paths": plan["paths"], "columns": plan["columns"],
+            "trajectories": asked.trajectories, "engine": self._engine.name,
         }  # fmt: skip
         return Row(
-            _new_id(now), batch.name, key, digest, "queued", text_of(now), plan["runs"], plan["part_size"], facts
+            _new_id(now), asked.name, key, asked.digest, "queued", text_of(now), plan["runs"], plan["part_size"], facts
         )
 
-    async def _planned(self, batch: Batch) -> Document:
+    async def _planned(self, asked: Asked) -> Document:
         try:
             await self._engine.connect()
-            plan: Document = await self._plans.run(
-                "plan_batch", batch.model_dump_json(), self._engine.threads, time_limit_s=PLAN_LIMIT_S
-            )
-        except JobRefusedError as refusal:
-            sentence = str(refusal)
-            raise refused(f"{sentence[:1].upper()}{sentence[1:]}.", FieldError("vary", None, sentence)) from refusal
-        except (JobFailedError, OutOfReach) as failure:
-            raise Problem(503, "Not planned", f"The batch could not be planned: {failure}.") from failure
+        except OutOfReach as away:
+            raise _not_planned(away) from away
+        plan: Document = await self._answer("plan_batch", asked.document, self._engine.threads)
         return plan
 
+    async def _answer(self, job: str, *arguments: Any) -> Any:
+        try:
+            return await self._plans.run(job, *arguments, time_limit_s=PLAN_LIMIT_S)
+        except JobRefusedError as refusal:
+            raise _refused(str(refusal)) from refusal
+        except JobFailedError as failure:
+            raise _not_planned(failure) from failure
 
-def digest_of(document: str) -> str:
-    """Return what tells a document from another one."""
-    return hashlib.sha256(document.encode()).hexdigest()
+
+def _not_planned(failure: Exception) -> Problem:
+    return Problem(503, "Not planned", f"The batch could not be planned: {failure}.")
+
+
+def _refused(sentence: str) -> Problem:
+    return refused(f"{sentence[:1].upper()}{sentence[1:]}.", FieldError("vary", None, sentence))
 
 
 def same(found: Row, digest: str) -> Row:
@@ -76,5 +88,5 @@ def same(found: Row, digest: str) -> Row:
     return found
 
 
-def _new_id(now: datetime) -> str:
+def _new_id(now: datetime) -> str:  # sweep.ID tells such a name from others
     return f"{now:%Y%m%d-%H%M%S}-{now.microsecond // 1000:03d}-{secrets.token_hex(3)}"

@@ -1,26 +1,28 @@
 """The batches of a server: asked for, looked at, cancelled, deleted."""
 
 import asyncio
+import logging
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from backend.batch.admission import Admission, digest_of, same
+from backend.batch.admission import Admission, same
 from backend.batch.catalogue import ACTIVE, BatchCatalogue, Row
 from backend.batch.engine import Engine
-from backend.batch.folder import BatchFolder, Division
+from backend.batch.folder import DELETED, BatchFolder, Division
 from backend.batch.limits import Limits
 from backend.batch.listed import listed
 from backend.batch.news import News, Tell
 from backend.batch.queue import BatchQueue
 from backend.batch.running import Running
+from backend.batch.sweep import sweep
 from backend.batch.times import Times
 from backend.batch.version import model_version
 from backend.compute.pool import Jobs
 from backend.problem import Problem
 from backend.store.troubles import Clash
-from vssea_core.batch.document import Batch
 
+logger = logging.getLogger(__name__)
 Document = dict[str, Any]
 
 
@@ -39,7 +41,8 @@ class Batches:
     ) -> None:
         self.folder, self.engine, self.plans, self.results = folder, engine, plans, results
         self._limits, self._catalogue, self._news = limits, catalogue, News(times.clock)
-        self._turn = asyncio.Lock()  # what has ended is resumed or deleted
+        self._turn = asyncio.Lock()  # a batch is made, resumed or deleted, or folders are swept
+        self._sweeping: asyncio.Task[None] | None = None
         self._admission = Admission(limits, engine, plans, times)
         self._queue = BatchQueue(folder, limits, catalogue, engine, results, self._news, times)
 
@@ -47,9 +50,13 @@ class Batches:
         """Go on with what a stop has left, then with what is asked for; `tell` hears how far it is."""
         self._news.hear(tell)
         self._queue.start()
+        self._sweeping = asyncio.create_task(self._swept())
 
     async def stop(self) -> None:
         """End the parts under way; the batch goes on at the next start."""
+        if self._sweeping is not None:
+            self._sweeping.cancel()
+            await asyncio.gather(self._sweeping, return_exceptions=True)
         await self._queue.stop()
         await self.engine.end()
 
@@ -66,6 +73,14 @@ class Batches:
         """Return where a batch's files are."""
         return BatchFolder(self.folder / row.id)
 
+    async def document_path(self, row: Row) -> Path:
+        """Return the file of the document that a batch was started with. Raises Problem if it is gone."""
+        path = self.folder_of(row).document_path
+        if not await asyncio.to_thread(path.exists):
+            what = f"The document of the batch {row.name!r} is gone: there is no {path}."
+            raise Problem(404, "No document", f"{what} Put the file back, or delete the batch.")
+        return path
+
     async def document(self, batch: str) -> Document:
         """Return a batch as REST gives it. Raises Problem if there is none."""
         running = self._queue.running  # what it says later on is newer than the row
@@ -79,39 +94,39 @@ class Batches:
 
     # ---- what can be done
 
-    async def estimate(self, batch: Batch) -> Document:
-        """Return what a batch would take. Raises Problem if it makes no sense or is too large."""
-        return await self._admission.estimate(batch)
+    async def estimate(self, body: bytes) -> Document:
+        """Return what the batch in a request's body would take. Raises Problem if it makes no sense or is too large."""
+        return await self._admission.estimate(await self._admission.read(body))
 
-    async def create(self, batch: Batch, key: str | None = None) -> tuple[Row, bool]:
+    async def create(self, body: bytes, key: str | None = None) -> tuple[Row, bool]:
         """Return a new batch that waits for its turn, or the one that was asked for with the same key; and whether it is new.
 
-        Raises Problem.
+        `body` is a document as JSON; workers see to it, since a large one would hold up the loop. Raises Problem.
         """
-        document = batch.model_dump_json()
-        digest = digest_of(document)
+        asked = await self._admission.read(body)
         if key is not None and (found := await asyncio.to_thread(self._catalogue.find_key, key)):
-            return same(found, digest), False
-        row = await self._admission.row(batch, digest, key)
+            return same(found, asked.digest), False
+        row = await self._admission.row(asked, key)
         self._limits.check_waiting(self._queue.length)
-        return await self._kept(row, document)
+        async with self._turn:
+            return await self._kept(row, asked.document)
 
     async def _kept(self, row: Row, document: str) -> tuple[Row, bool]:
         folder = self.folder_of(row)
         try:
             await asyncio.to_thread(folder.create, document, Division(row.part_size, model_version()))
-        except OSError as error:
-            raise Problem(507, "Not kept", f"{self.folder} cannot be written: {error.strerror or error}.") from error
-        try:
             await asyncio.to_thread(self._catalogue.add, row)
+        except OSError as error:
+            await _removed(folder)
+            raise Problem(507, "Not kept", f"{self.folder} cannot be written: {error.strerror or error}.") from error
         except Clash:  # the same key, a moment earlier
-            await asyncio.to_thread(folder.delete)
+            await _removed(folder)
             found = await asyncio.to_thread(self._catalogue.find_key, str(row.key))
             if found is None:
                 raise
             return same(found, row.digest), False
         except Problem:
-            await asyncio.to_thread(folder.delete)
+            await _removed(folder)
             raise
         self._queue.add(row)
         self._news.tell(row.id, row.state, 0.0)
@@ -142,9 +157,36 @@ class Batches:
             row = await self.row(batch)
             if row.state in ACTIVE:
                 raise Problem(409, "Not ended", f"The batch {row.name!r} is {row.state}; cancel it first.")
-            await asyncio.to_thread(self._catalogue.forget, batch)
-            await asyncio.to_thread(self.folder_of(row).delete)
-            self._news.tell(row.id, "deleted", 0.0)
+            try:
+                deleted = await asyncio.to_thread(self.folder_of(row).renamed, DELETED)
+            except OSError as error:
+                why = f"The files of the batch {row.name!r} cannot be removed: {error.strerror or error}."
+                raise Problem(
+                    507, "Not deleted", f"{why} It is left as it is; see to the rights of {self.folder}."
+                ) from error
+            try:
+                await asyncio.to_thread(self._catalogue.forget, batch)
+            except Problem:
+                await asyncio.to_thread(deleted.renamed, "")
+                raise
+        await _removed(deleted)
+        self._news.tell(row.id, "deleted", 0.0)
+
+    async def _swept(self) -> None:
+        async with self._turn:
+            try:
+                await asyncio.to_thread(lambda: sweep(self.folder, self._catalogue.ids()))
+            except (Problem, OSError) as problem:
+                logger.info("left folders of batches are looked for at the next start: %s", problem)
+            except Exception:
+                logger.exception("left folders of batches are looked for at the next start")
+
+
+async def _removed(folder: BatchFolder) -> None:
+    try:
+        await asyncio.to_thread(folder.delete)
+    except OSError as error:
+        logger.warning("%s cannot be removed now: %s; the next start tries again", folder.path, error)
 
 
 def _document(row: Row, running: Running | None) -> Document:

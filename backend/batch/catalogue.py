@@ -66,6 +66,11 @@ class BatchCatalogue:
         """Return the batch that was asked for with an idempotency key, None if there is none."""
         return self._one(BATCHES.c.key == key)
 
+    def ids(self) -> set[str]:
+        """Return the ids of all batches."""
+        with self._database.connect() as connection:
+            return set(connection.execute(sa.select(BATCHES.c.id)).scalars())
+
     def active(self) -> list[Row]:
         """Return the batches that have not ended and can be read, oldest first."""
         asked = sa.select(BATCHES).where(BATCHES.c.state.in_(ACTIVE)).order_by(BATCHES.c.created_at, BATCHES.c.id)

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
 ENDED_BY_USER = 130
 """Exit status of a program that Ctrl+C has ended."""
-TOLD = ("runs", "samples", "in_lanes", "seconds", "bytes", "paths", "columns", "first", "refused")
-"""What an estimate tells, as REST does."""
 
 
 def batch(
@@ -66,6 +64,7 @@ def batch(
 
 async def _run(document: str, output: Path, workers: int, address: str | None, only_estimate: bool) -> None:
     from backend.batch.beside_output import BesideOutput
+    from backend.batch.estimate import estimate_of, why_refused
     from backend.batch.jobs import plan_batch
 
     engine = _engine(workers, address)
@@ -74,11 +73,12 @@ async def _run(document: str, output: Path, workers: int, address: str | None, o
             await engine.connect()
             workers = engine.threads
         plan = plan_batch(document, workers)
+        await asyncio.sleep(0)  # Ctrl+C meanwhile ends it before there is a folder
         if only_estimate:
-            typer.echo(json.dumps({name: plan[name] for name in TOLD}, indent=2, ensure_ascii=False))
+            typer.echo(json.dumps(estimate_of(plan), indent=2, ensure_ascii=False))
             return
-        if plan["all_refused"]:
-            refuse(f"no run of this batch can start; {plan['refused'][0]}")
+        if why := why_refused(plan):
+            refuse(why)
         beside = BesideOutput(output)
         with beside.held():
             await _compute(engine, document, plan, beside)
@@ -88,14 +88,15 @@ async def _run(document: str, output: Path, workers: int, address: str | None, o
 
 async def _compute(engine: "Engine", document: str, plan: dict[str, Any], beside: "BesideOutput") -> None:
     from backend.batch.part_run import parts_of, run_parts
-    from backend.batch.progress import RunCounts
-    from backend.batch.result_jobs import counts
+    from backend.batch.progress import RunCounts, summed
+    from backend.batch.result_jobs import counts_by_part
     from backend.batch.terminal import shown
 
     begun_s = time.monotonic()
     parts = parts_of(document, plan["runs"], beside.take_up(document, plan["part_size"]))
-    there = set(beside.folder.parts())
-    progress = RunCounts(plan["runs"], len(parts), counts(str(beside.path)), len(there), threads=engine.threads)
+    found = counts_by_part(str(beside.path)).items()
+    there = {number: counts for number, counts in found if counts is not None}  # what cannot be read is computed again
+    progress = RunCounts(plan["runs"], len(parts), summed(there.values()), len(there), threads=engine.threads)
     with shown(progress) as show:
 
         async def keep(part: Any, files: Any) -> None:
@@ -133,13 +134,14 @@ def _engine(workers: int, address: str | None) -> Any:
 
 def _document(file: str) -> str:
     """Return a batch's document, whole and always written the same way."""
+    from backend.batch.limits import runs_of
     from backend.problem import Problem, from_validation
     from vssea_core.batch.document import Batch
 
     try:
         text = sys.stdin.read() if file == "-" else Path(file).read_text("utf-8")
         batch = Batch.model_validate_json(text)
-        _limits().check_runs(batch)
+        _limits().check_runs(runs_of(batch))
         return batch.model_dump_json()
     except Problem as refusal:
         refuse(refusal.detail)

@@ -4,14 +4,16 @@ import json
 import os
 import re
 import shutil
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from backend.batch.engine import PartFiles
 
 DOCUMENT, DIVISION, ROWS, TRAJECTORIES = "batch.json", "parts.json", "part", "trajectories"
-UNFINISHED, DAMAGED = ".new", ".damaged"
+UNFINISHED, DAMAGED, DELETED = ".new", ".damaged", ".deleted"
 PART = re.compile(rf"{ROWS}-(\d{{5,}})\.parquet")
+OWN = re.compile(rf"({DOCUMENT}|{DIVISION}|({ROWS}|{TRAJECTORIES})-\d+\.parquet)({UNFINISHED}|{DAMAGED})?")
 
 
 @dataclass(frozen=True)
@@ -95,8 +97,20 @@ class BatchFolder:
         return sum(path.stat().st_size for path in self.path.iterdir())
 
     def delete(self) -> None:
-        """Remove all of it."""
-        shutil.rmtree(self.path, ignore_errors=True)
+        """Remove all of it, if it is there. Raises OSError."""
+        with suppress(FileNotFoundError):
+            shutil.rmtree(self.path)
+
+    def renamed(self, ending: str) -> "BatchFolder":
+        """Give it, if it is there, a name with another ending, and return it under that. Raises OSError."""
+        other = BatchFolder(self.path.with_name(self.path.name.removesuffix(DELETED) + ending))
+        with suppress(FileNotFoundError):
+            self.path.rename(other.path)
+        return other
+
+    def has_only_its_own(self) -> bool:
+        """Return whether nobody has put another file into it. Raises OSError."""
+        return all(OWN.fullmatch(path.name) for path in self.path.iterdir())
 
     def _write(self, name: str, content: bytes) -> None:
         unfinished = self.path / f"{name}{UNFINISHED}"

@@ -9,6 +9,11 @@ from vssea_core.batch.document import Batch, count_of
 from vssea_core.field_errors import FieldError
 
 
+def runs_of(batch: Batch) -> int:
+    """Return how many runs a batch has."""
+    return math.prod(count_of(variation) for variation in batch.vary)
+
+
 class TooLarge(RuntimeError):
     """The results have become larger than they may."""
 
@@ -26,9 +31,8 @@ class Limits:
         """Return the limits that the settings name."""
         return cls(settings.batch_most_runs, 1e9 * settings.batch_most_gb, settings.batch_waiting)
 
-    def check_runs(self, batch: Batch) -> None:
+    def check_runs(self, runs: int) -> None:
         """Raise Problem if a batch has too many runs."""
-        runs = math.prod(count_of(variation) for variation in batch.vary)
         if runs > self.runs:
             expected = f"expected at most {self.runs:,} runs"
             raise refused(

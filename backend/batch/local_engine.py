@@ -18,7 +18,7 @@ PART_LIMIT_S = 3600.0
 class LocalEngine:
     """Computes parts in `workers` processes, each started when it is first needed."""
 
-    def __init__(self, workers: int, idle_s: float = IDLE_S) -> None:
+    def __init__(self, workers: int, idle_s: float = IDLE_S, end_limit_s: float = END_LIMIT_S) -> None:
         self.threads = self.at_a_time = workers
         self.name = f"this machine, {workers} worker{'' if workers == 1 else 's'}"
         self._all = [Worker(f"vssea batch {number}", "", NICENESS, jobs=JOBS) for number in range(1, workers + 1)]
@@ -26,7 +26,7 @@ class LocalEngine:
         for worker in reversed(self._all):
             self._turns.put_nowait(worker)
         self._warm: dict[Worker, int | None] = {}
-        self._idle_s = idle_s
+        self._idle_s, self._end_limit_s = idle_s, end_limit_s
         self._idle: asyncio.Task[None] | None = None
 
     async def connect(self) -> None:
@@ -37,15 +37,8 @@ class LocalEngine:
         if self._idle is not None:
             self._idle.cancel()
         worker = await self._turns.get()
-        job = asyncio.create_task(self._computed(worker, part))
         try:
-            return await asyncio.shield(job)
-        except asyncio.CancelledError:
-            worker.end_job()
-            await asyncio.wait({job}, timeout=END_LIMIT_S)
-            job.cancel()  # ends the process, if it is still at work
-            await asyncio.gather(job, return_exceptions=True)
-            raise
+            return await self._computed(worker, part)
         finally:
             self._turns.put_nowait(worker)
             if self._turns.qsize() == len(self._all):
@@ -66,7 +59,9 @@ class LocalEngine:
             if worker.process_id is None or self._warm.get(worker) != worker.process_id:
                 await worker.run("warm_up", time_limit_s=WARM_LIMIT_S)
                 self._warm[worker] = worker.process_id
-            files: PartFiles = await worker.run("compute_part", part, time_limit_s=PART_LIMIT_S)
+            files: PartFiles = await worker.run(
+                "compute_part", part, time_limit_s=PART_LIMIT_S, end_limit_s=self._end_limit_s
+            )
         except WorkerLostError as lost:
             raise WorkerLost(str(lost)) from lost
         except JobRefusedError as refusal:

@@ -9,6 +9,8 @@ from backend.batch.engine import Engine, OutOfReach, PartFailed, PartFiles, Part
 
 TRIES: dict[type[Exception], int] = {WorkerLost: 10, PartRefused: 1, OutOfReach: 20, PartFailed: 3}
 """A part that fails so often in one of these ways fails the batch: a cluster may be away for ten minutes."""
+PAUSED = PartFailed, OutOfReach
+"""After these there is a pause; the part of a lost worker is tried at once by another one."""
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 0.25, 60.0
 Keep = Callable[[PartTask, PartFiles], Coroutine[Any, Any, None]]
 Sleep = Callable[[float], Coroutine[Any, Any, object]]
@@ -43,9 +45,7 @@ async def run_parts(engine: Engine, parts: Iterable[PartTask], keep: Keep, sleep
         while waiting or under_way:
             while waiting and len(under_way) < engine.at_a_time:
                 part = waiting.popleft()
-                failed = max(
-                    failures[part.number, kind] for kind in (PartFailed, OutOfReach)
-                )  # no pause for a lost worker
+                failed = max(failures[part.number, kind] for kind in PAUSED)
                 under_way[asyncio.create_task(compute(part, pause_s(failed)))] = part
             ended, _ = await asyncio.wait(under_way, return_when=asyncio.FIRST_COMPLETED)
             for task in ended:

@@ -2,10 +2,18 @@
 
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 STATES = ("done", "ended", "refused")
+
+
+def summed(parts: Iterable[dict[str, int]]) -> dict[str, int]:
+    """Return the runs by state of several parts together."""
+    total = Counter[str]()
+    for counts in parts:
+        total.update(counts)
+    return dict(total)
 
 
 class RunCounts:

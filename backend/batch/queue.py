@@ -13,7 +13,7 @@ from backend.batch.engine import Engine
 from backend.batch.folder import BatchFolder
 from backend.batch.limits import Limits
 from backend.batch.news import News
-from backend.batch.running import Running
+from backend.batch.running import UNEXPECTED, Running
 from backend.batch.times import Times
 from backend.compute.pool import Jobs
 from backend.problem import Problem
@@ -21,7 +21,6 @@ from backend.problem import Problem
 logger = logging.getLogger(__name__)
 RETRY_S = 10.0
 CANCEL_LIMIT_S = 10.0
-UNEXPECTED = "an internal error; the server's log has the details"
 
 
 class BatchQueue:
@@ -77,7 +76,7 @@ class BatchQueue:
             cancelled = replace(waiting, state="cancelled", ended_at=self._times.text())
             try:
                 await asyncio.to_thread(self._catalogue.put, cancelled)
-            except Problem:
+            except BaseException:
                 self.add(waiting)
                 raise
             self._news.tell(cancelled.id, cancelled.state, 0.0)

@@ -21,16 +21,8 @@ LONG: frozenset[str] = frozenset()
 MEDIA_TYPES = {
     "parquet": "application/vnd.apache.parquet",
     "csv": "text/csv; charset=utf-8",
-    "arrow": "application/vnd.apache.arrow.file",
+    "arrow": "application/vnd.apache.arrow.stream",
 }
-
-
-def counts(folder: str) -> dict[str, int]:
-    """Return how many runs there are by state, in the parts that are there and can be read."""
-    found = Counter[str]()
-    for part in counts_by_part(folder).values():
-        found.update(part or {})
-    return dict(found)
 
 
 def counts_by_part(folder: str) -> dict[int, dict[str, int] | None]:
@@ -147,7 +139,7 @@ def _write(form: str, schema: pa.Schema, tables: Iterable[pa.Table], path: str) 
     if form == "parquet":
         writer: Any = pq.ParquetWriter(path, schema, compression="zstd")
     elif form == "arrow":
-        writer = pyarrow.ipc.new_file(path, schema)
+        writer = pyarrow.ipc.new_stream(path, schema)
     else:
         writer = pyarrow.csv.CSVWriter(path, schema)
     with writer:

@@ -2,7 +2,6 @@
 
 import asyncio
 import logging
-from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -13,13 +12,14 @@ from backend.batch.folder import BatchFolder, Division
 from backend.batch.limits import Limits, TooLarge
 from backend.batch.listed import listed
 from backend.batch.part_run import parts_of, run_parts
-from backend.batch.progress import RunCounts
+from backend.batch.progress import RunCounts, summed
 from backend.batch.times import Times
 from backend.batch.version import model_version
 from backend.compute.pool import JobFailedError, JobRefusedError, Jobs
 
 logger = logging.getLogger(__name__)
 READ_LIMIT_S = 900.0
+UNEXPECTED = "an internal error; the server's log has the details"
 ANEW = "computed from its start: the parts that were kept are of another version of the model"
 
 
@@ -88,7 +88,7 @@ class Running:
             kept, missing = {}, parts
         if kept:
             self._size = await asyncio.to_thread(self._folder.size)
-            self.progress = self._counted(dict(sum(map(Counter, kept.values()), Counter[str]())), len(kept))
+            self.progress = self._counted(summed(kept.values()), len(kept))
         await run_parts(self._engine, missing, self._keep, self._sleep)
 
     async def _kept(self) -> dict[int, dict[str, int]]:
@@ -136,5 +136,5 @@ class Running:
                 reason = f"{self._folder.path} cannot be read or written: {failure.strerror or failure}"
             case failure:
                 logger.error("batch %s failed", self.row.id, exc_info=failure)
-                reason = "an internal error; the server's log has the details"
+                reason = UNEXPECTED
         return "failed", reason

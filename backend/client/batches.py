@@ -125,10 +125,18 @@ class Batches:
         return cast(Document, self._connection.json(method, f"/api/batches{path}", body, headers=headers))
 
     def _table(self, path: str, columns: Sequence[str] | None) -> pa.Table:
-        with tempfile.TemporaryFile() as file:
-            self._download(path, file)
-            file.seek(0)
-            return pa.parquet.read_table(file, columns=None if columns is None else [*columns])
+        try:
+            with tempfile.TemporaryFile() as file:
+                self._download(path, file)
+                file.seek(0)
+                known = pa.parquet.read_schema(file).names
+                unknown = [name for name in columns or () if name not in known]
+                if unknown:
+                    raise VsseaError(f"there is no column {unknown[0]!r}; known here: {', '.join(known)}")
+                file.seek(0)
+                return pa.parquet.read_table(file, columns=None if columns is None else [*columns])
+        except (OSError, pa.ArrowException) as error:
+            raise VsseaError(f"the answer to GET /api/batches{path} cannot be read: {error}") from error
 
     def _download(self, path: str, file: IO[bytes]) -> None:
         with self._connection.opened("GET", f"/api/batches{path}") as answer:

@@ -9,6 +9,7 @@ import pyarrow.csv
 from backend.client.batches import Batches
 from backend.client.connection import Connection
 from backend.client.document import document_of
+from backend.client.problem import VsseaError
 
 Document = dict[str, Any]
 
@@ -40,11 +41,13 @@ class VsseaClient:
         query = {"trajectory": "csv", "every": every, "allow_unstable": str(allow_unstable).lower()}
         with self._connection.opened("POST", "/api/simulate", document_of(scenario), query) as answer:
             content = answer.read()
-        table = pa.csv.read_csv(pa.BufferReader(content), convert_options=pa.csv.ConvertOptions(null_values=[]))
+        try:
+            table = pa.csv.read_csv(pa.BufferReader(content), convert_options=pa.csv.ConvertOptions(null_values=[]))
+            table = table.cast(pa.schema([(heading, pa.float64()) for heading in table.column_names]))
+        except pa.ArrowException as error:
+            raise VsseaError(f"the answer to POST /api/simulate cannot be read: {error}") from error
         # Headings are such as "link_position [rad]".
-        return table.cast(pa.schema([(heading, pa.float64()) for heading in table.column_names])).rename_columns(
-            [heading.partition(" ")[0] for heading in table.column_names]
-        )
+        return table.rename_columns([heading.partition(" ")[0] for heading in table.column_names])
 
     def metrics(self, scenario: Any, allow_unstable: bool = False) -> Document:
         """Return metrics and limits of a scenario's run."""

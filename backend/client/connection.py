@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from typing import IO, Any
 from urllib.parse import urlencode, urlsplit
 
+from backend.client.document import text_of
 from backend.client.problem import VsseaError, error_of
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
@@ -64,7 +65,7 @@ class Connection:
         chosen = {name: value for name, value in (query or {}).items() if value is not None}
         request = urllib.request.Request(
             f"{self._base}{path}" + (f"?{urlencode(chosen)}" if chosen else ""),
-            data=None if body is None else json.dumps(body).encode(),
+            data=None if body is None else text_of(body),
             headers={"Accept": "*/*", **(headers or {})},
             method=method,
         )
@@ -74,7 +75,13 @@ class Connection:
             request.add_header("Authorization", f"Bearer {self._token}")
         asked = f"{method} {self._base}{path}"
         try:
-            with self._opener.open(request, timeout=self._timeout_s) as answer:
+            try:
+                opened = self._opener.open(request, timeout=self._timeout_s)
+            except ValueError:  # its words would show the token
+                raise VsseaError(
+                    f"{asked} cannot be asked: a key or token is no text for a header; expected ASCII"
+                ) from None
+            with opened as answer:
                 yield answer
         except urllib.error.HTTPError as error:
             with error:

@@ -24,3 +24,23 @@ def document_of(given: Any) -> dict[str, Any]:
     if not isinstance(given, dict):
         raise VsseaError(f"the document is a {type(given).__name__}; expected a dict, JSON text, a Path or a model")
     return given
+
+
+def text_of(document: Any) -> bytes:
+    """Return a document as JSON; numbers and arrays of numpy, and models of vssea_core, may stand anywhere in it."""
+    try:
+        return json.dumps(document, default=_plain, allow_nan=False).encode()
+    except TypeError as error:
+        raise VsseaError(f"the document is not JSON: {error}; expected numbers, texts, lists and dicts") from error
+    except ValueError as error:
+        raise VsseaError(
+            f"the document is not JSON: {error}; expected finite numbers, and nothing within itself"
+        ) from error
+
+
+def _plain(value: Any) -> Any:
+    if hasattr(value, "model_dump"):
+        return value.model_dump(mode="json")
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"it holds a {type(value).__name__}")

@@ -3,11 +3,12 @@
 import asyncio
 import logging
 from collections.abc import Callable
-from contextlib import suppress
+from concurrent.futures import ThreadPoolExecutor
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any, Protocol
 
+from backend.compute.exchange import Exchange, Hearer
 from backend.processes import CONTEXT, started
 
 logger = logging.getLogger(__name__)
@@ -31,9 +32,6 @@ class JobCancelledError(RuntimeError):
     """The job was ended because it was no longer wanted."""
 
 
-Hearer = Callable[[float, str], None]
-
-
 class Jobs(Protocol):
     """Whoever answers jobs, as a worker does."""
 
@@ -52,6 +50,8 @@ class Worker:
         self._turn = asyncio.Lock()
         self._process: BaseProcess | None = None
         self._pipe: Connection
+        self._thread: ThreadPoolExecutor  # of its own: a job that runs for hours keeps nobody else waiting for one
+        self._exchange: Exchange | None = None
 
     async def start(self) -> None:
         """Start the process and wait until its kernels are compiled."""
@@ -59,22 +59,30 @@ class Worker:
             await self._ready()
 
     async def run(
-        self, job: str, *arguments: Any, time_limit_s: float = 60.0, on_progress: Hearer | None = None
+        self,
+        job: str,
+        *arguments: Any,
+        time_limit_s: float = 60.0,
+        on_progress: Hearer | None = None,
+        end_limit_s: float = 0.0,
     ) -> Any:
         """Return what `job` returns; `on_progress` hears a share from 0 to 1 and words.
 
-        Raises JobRefusedError, JobFailedError or, after `end_job`, JobCancelledError. A cancelled or overdue job ends with
-        its process.
+        Raises JobRefusedError, JobFailedError or, after `end_job`, JobCancelledError. An overdue job ends with its process, and
+        so does a cancelled one, unless it is long and ends at its next progress, within `end_limit_s`.
         """
         async with self._turn:
-            await self._ready()
-            return await self._answer((job, arguments), time_limit_s, on_progress)
+            exchange = self._exchange = Exchange((job, arguments), on_progress)
+            try:
+                await self._ready()
+                return await self._answer(exchange, job, time_limit_s, end_limit_s)
+            finally:
+                self._exchange = None
 
     def end_job(self) -> None:
         """Ask the long job that runs to end at its next progress; the process stays."""
-        if self._process is not None and self._turn.locked():
-            with suppress(OSError):
-                self._pipe.send(None)
+        if self._exchange is not None:
+            self._exchange.end()
 
     async def stop(self) -> None:
         """End the process."""
@@ -91,49 +99,44 @@ class Worker:
             return
         await self._end()
         self._pipe, theirs = CONTEXT.Pipe()
+        self._thread = ThreadPoolExecutor(1, self._name)
         self._process = await asyncio.to_thread(
             started, self._name, self._entry, theirs, self._niceness, self._first_job, self._jobs
         )
         theirs.close()
-        await self._answer(None, START_LIMIT_S)
+        await self._answer(Exchange(), "start", START_LIMIT_S)
 
-    async def _answer(
-        self, job: tuple[str, tuple[Any, ...]] | None, time_limit_s: float, on_progress: Hearer | None = None
-    ) -> Any:
-        pipe, loop = self._pipe, asyncio.get_running_loop()
-
-        def exchange() -> Any:
-            if job is not None:
-                pipe.send(job)
-            while True:
-                kind, content = pipe.recv()
-                if kind != "progress":
-                    return kind, content
-                if on_progress is not None:
-                    loop.call_soon_threadsafe(on_progress, *content)
-
+    async def _answer(self, exchange: Exchange, job: str, time_limit_s: float, end_limit_s: float = 0.0) -> Any:
+        answer = asyncio.get_running_loop().run_in_executor(self._thread, exchange, self._pipe)
         try:
             async with asyncio.timeout(time_limit_s):
-                kind, content = await asyncio.to_thread(exchange)
-        except (EOFError, OSError) as broken:
-            await self._end()
-            raise WorkerLostError(f"the {self._name} process ended unexpectedly; try again") from broken
+                kind, content = await asyncio.shield(answer)
         except TimeoutError as late:
             await self._end()
             raise JobFailedError(
                 f"this took longer than {time_limit_s:g} s and was given up; shorten the scenario"
             ) from late
         except asyncio.CancelledError:
-            await asyncio.shield(self._end())
+            await asyncio.shield(self._given_up(exchange, answer, end_limit_s))
             raise
+        if kind == "lost":
+            await self._end()
+            raise WorkerLostError(f"the {self._name} process ended unexpectedly; try again") from content
         if kind == "refused":
             raise JobRefusedError(content)
         if kind == "cancelled":
-            raise JobCancelledError(f"{job and job[0]} was cancelled")
+            raise JobCancelledError(f"{job} was cancelled")
         if kind == "failed":
-            logger.error("job %s failed:\n%s", job and job[0], content)
+            logger.error("job %s failed:\n%s", job, content)
             raise JobFailedError("an internal error; the server's log has the details")
         return content
+
+    async def _given_up(self, exchange: Exchange, answer: asyncio.Future[Any], end_limit_s: float) -> None:
+        if end_limit_s:
+            exchange.end()
+            await asyncio.wait({answer}, timeout=end_limit_s)
+        if not answer.done() or answer.result()[0] == "lost":
+            await self._end()
 
     async def _end(self) -> None:
         process, self._process = self._process, None
@@ -144,6 +147,7 @@ class Worker:
         if process.exitcode is None:
             process.kill()
         self._pipe.close()
+        self._thread.shutdown(wait=False)
 
 
 class Pool:

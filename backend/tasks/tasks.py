@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any, Literal
 
-from backend.compute.pool import Hearer, JobCancelledError, JobFailedError, JobRefusedError, Worker
+from backend.compute.exchange import Hearer
+from backend.compute.pool import JobCancelledError, JobFailedError, JobRefusedError, Worker
 from backend.problem import Problem
 
 State = Literal["queued", "running", "done", "refused", "failed", "cancelled"]

@@ -16,7 +16,7 @@ import pytest
 from distributed import LocalCluster
 from typer.testing import CliRunner, Result
 
-from backend.batch import local_engine, part_jobs
+from backend.batch import jobs, local_engine, part_jobs
 from backend.batch.beside_output import BesideOutput
 from backend.batch.dask_engine import DaskEngine
 from backend.batch.engine import PartFailed, PartFiles, PartTask
@@ -41,7 +41,7 @@ BATCH = Batch(
 READ = {
     ".parquet": pq.read_table,
     ".csv": pyarrow.csv.read_csv,
-    ".arrow": lambda path: pa.ipc.open_file(path).read_all(),
+    ".arrow": lambda path: pa.ipc.open_stream(path).read_all(),
 }
 
 
@@ -243,7 +243,8 @@ def test_ctrl_c_while_the_output_is_written_comes_too_late(
 
 
 def test_ctrl_c_before_anything_is_kept_says_no_more(here: Here, file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(BesideOutput, "take_up", lambda *given: (signal.raise_signal(signal.SIGINT), 16)[1])
+    plan = jobs.plan_batch
+    monkeypatch.setattr(jobs, "plan_batch", lambda *given: (signal.raise_signal(signal.SIGINT), plan(*given))[1])
     outcome = vssea(file, "-o", file.with_name("out.parquet"))
     assert (outcome.exit_code, outcome.stderr) == (130, "vssea: ended\n")
     assert [path.name for path in file.parent.iterdir()] == ["batch.json"]

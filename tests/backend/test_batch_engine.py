@@ -15,12 +15,12 @@ from pydantic import ValidationError
 from typer.testing import CliRunner
 
 from backend.batch.engine import PartFailed, PartFiles, PartRefused, PartTask
-from backend.batch.local_engine import LocalEngine
+from backend.batch.local_engine import END_LIMIT_S, LocalEngine
 from backend.batch.part_files import part_files
 from backend.batch.sizes import MOST_RUNS, PART_BYTES, part_size
 from backend.batch.start import engine_for
 from backend.cli import app
-from backend.compute.pool import Pool
+from backend.compute.pool import Pool, Worker
 from backend.settings import Settings
 from vssea_core.batch.document import Batch, Grid
 from vssea_core.batch.part import run_part
@@ -32,13 +32,19 @@ GRID = Grid(kind="grid", path="reference.amplitude", low=0.1, high=0.5, count=RU
 BATCH = Batch(scenario=NOMINAL.model_copy(update={"duration_s": 1.0}), vary=(GRID,))
 DOCUMENT = BATCH.model_dump_json()
 FEW = PartTask(DOCUMENT, 0, 40, 20)
-LONG = PartTask(DOCUMENT, 0, 0, RUNS)
+MINUTES = BATCH.model_copy(update={"scenario": NOMINAL.model_copy(update={"duration_s": 60.0})})
+LONG = PartTask(MINUTES.model_dump_json(), 0, 0, 1000)
 PATIENCE_S = 240.0
 
 
-def with_engine(work: Callable[[LocalEngine], Coroutine[Any, Any, Any]], workers: int = 1, idle_s: float = 60.0) -> Any:
+def with_engine(
+    work: Callable[[LocalEngine], Coroutine[Any, Any, Any]],
+    workers: int = 1,
+    idle_s: float = 60.0,
+    end_limit_s: float = END_LIMIT_S,
+) -> Any:
     async def run() -> Any:
-        engine = LocalEngine(workers, idle_s)
+        engine = LocalEngine(workers, idle_s, end_limit_s)
         try:
             return await asyncio.wait_for(work(engine), PATIENCE_S)
         finally:
@@ -60,17 +66,60 @@ def test_a_part_is_the_same_bits_in_a_worker_as_here() -> None:
     assert pq.read_table(io.BytesIO(files.rows))["run"].to_pylist() == list(range(40, 60))
 
 
-def test_a_cancelled_part_ends_and_the_worker_serves_the_next_one() -> None:
+@pytest.fixture
+def shares(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """How far the parts that are computed say they are."""
+    heard: list[float] = []
+    run = Worker.run
+
+    async def listening(worker: Worker, *job: Any, **more: Any) -> Any:
+        return await run(worker, *job, **more, on_progress=lambda share, words: heard.append(share))
+
+    monkeypatch.setattr(Worker, "run", listening)
+    return heard
+
+
+async def cancelled(part: asyncio.Task[PartFiles]) -> None:
+    part.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await part
+
+
+def test_a_part_that_is_cancelled_while_it_runs_ends_and_its_worker_serves_the_next_one(shares: list[float]) -> None:
     async def work(engine: LocalEngine) -> PartFiles:
         await engine.run(FEW)
+        shares.clear()
+        processes = engine.process_ids()
         long = asyncio.create_task(engine.run(LONG))
-        await asyncio.sleep(0)
-        long.cancel()
-        with pytest.raises(asyncio.CancelledError):
-            await long
-        return await engine.run(FEW)
+        while not shares:  # noqa: ASYNC110 - other tests look into the list as well
+            await asyncio.sleep(1e-3)
+        await cancelled(long)
+        assert max(shares) < 1.0
+        files = await engine.run(FEW)
+        assert engine.process_ids() == processes
+        return files
 
-    assert same(with_engine(work))
+    assert same(with_engine(work, end_limit_s=PATIENCE_S))
+
+
+@pytest.mark.parametrize("steps", range(6))
+def test_a_part_that_is_cancelled_on_its_way_to_a_worker_is_not_computed_and_costs_no_worker(
+    shares: list[float], steps: int
+) -> None:
+    async def work(engine: LocalEngine) -> PartFiles:
+        await engine.run(FEW)
+        shares.clear()
+        processes = engine.process_ids()
+        long = asyncio.create_task(engine.run(LONG))
+        for _ in range(steps):
+            await asyncio.sleep(0)
+        await cancelled(long)
+        assert max(shares, default=0.0) < 1.0
+        files = await engine.run(FEW)
+        assert engine.process_ids() == processes
+        return files
+
+    assert same(with_engine(work, end_limit_s=PATIENCE_S))
 
 
 def test_a_part_that_makes_no_sense_fails_with_its_reason() -> None:

@@ -36,7 +36,6 @@ def test_a_part_that_cannot_be_read_is_found_by_its_number_and_may_be_put_aside(
     cut(folder.path / f"{kind}-00001.parquet")
     whole = {"done": 1, "ended": 1}
     assert result_jobs.counts_by_part(str(folder.path)) == {0: whole, 1: None, 2: whole}
-    assert result_jobs.counts(str(folder.path)) == {"done": 2, "ended": 2}
     folder.put_aside(1)
     assert folder.parts() == [0, 2]
     assert len(folder.trajectories()) == 2

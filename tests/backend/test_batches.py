@@ -89,7 +89,7 @@ def test_pages_and_files_hold_the_same(sweep: tuple[httpx.Client, dict[str, Any]
     http, found = sweep
     place = f"{BATCHES}/{found['id']}/results"
     whole = pq.read_table(io.BytesIO(http.get(f"{place}.parquet").content))
-    assert pa.ipc.open_file(io.BytesIO(http.get(f"{place}.arrow").content)).read_all().equals(whole)
+    assert pa.ipc.open_stream(io.BytesIO(http.get(f"{place}.arrow").content)).read_all().equals(whole)
     text = pa.csv.read_csv(
         io.BytesIO(http.get(f"{place}.csv").content),
         convert_options=pa.csv.ConvertOptions(column_types=whole.schema, strings_can_be_null=False),
@@ -202,7 +202,7 @@ def test_trajectories_are_those_of_single_runs(http_batches: httpx.Client) -> No
     place = f"{BATCHES}/{found['id']}"
     table = pq.read_table(io.BytesIO(http_batches.get(f"{place}/trajectories.parquet").content))
     assert (
-        pa.ipc.open_file(io.BytesIO(http_batches.get(f"{place}/trajectories.arrow").content)).read_all().equals(table)
+        pa.ipc.open_stream(io.BytesIO(http_batches.get(f"{place}/trajectories.arrow").content)).read_all().equals(table)
     )
     assert table.column_names == ["run", "time", "link_position", "motor_torque"]
     assert table["run"].to_pylist() == np.repeat(np.arange(20), 40).tolist()
@@ -211,6 +211,28 @@ def test_trajectories_are_those_of_single_runs(http_batches: httpx.Client) -> No
     names = [channel.name for channel in CHANNELS]
     for name in table.column_names[1:]:
         assert table[name].to_numpy()[17 * 40 : 18 * 40].tolist() == rows[:, names.index(name)].tolist()
+
+
+def test_a_damaged_part_is_named_and_resuming_computes_it_again(http_batches: httpx.Client, server: Server) -> None:
+    found = done(http_batches, batch(grid(INERTIA, 0.1, 0.2, 40)))
+    place = f"{BATCHES}/{found['id']}"
+    whole = http_batches.get(f"{place}/results").json()
+    part = server.errors.parent / "batches" / found["id"] / "part-00001.parquet"
+    part.write_bytes(part.read_bytes()[:-20])
+    for wanted in ("results", "results.parquet", "runs/17"):
+        detail = problem_of(http_batches.get(f"{place}/{wanted}"), 422)["detail"]
+        assert "The file part-00001.parquet of this batch's results is damaged; resume the batch" in detail
+    assert http_batches.post(f"{place}/resume").json()["id"] == found["id"]
+    assert ended(http_batches, found["id"])["state"] == "done"
+    assert http_batches.get(f"{place}/results").json() == whole
+
+
+@pytest.mark.parametrize("wanted", ["document", "runs/0", "runs/0/scenario"])
+def test_a_document_that_is_gone_is_told(http_batches: httpx.Client, server: Server, wanted: str) -> None:
+    found = done(http_batches, batch(grid(INERTIA, 0.1, 0.2, 3)))
+    (server.errors.parent / "batches" / found["id"] / "batch.json").unlink()
+    detail = problem_of(http_batches.get(f"{BATCHES}/{found['id']}/{wanted}"), 404)["detail"]
+    assert "Put the file back, or delete the batch." in detail
 
 
 def test_a_page_hears_of_each_state(http_batches: httpx.Client, server: Server) -> None:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet
 import pytest
@@ -12,6 +13,7 @@ import pytest
 from backend.client import VsseaClient, VsseaError
 from tests.backend.fake_server import Answer, FakeServer, fake_server
 from vssea_core.batch.document import Batch, Grid
+from vssea_core.scenarios import NOMINAL
 
 BATCH = {"id": "b1", "state": "queued", "name": "batch"}
 TABLE = pa.table({"run": [0, 1], "tuning.model.link_inertia": [0.1, 0.2], "rms_error": [1e-3, float("nan")]})
@@ -131,6 +133,52 @@ def test_what_is_no_document_is_told_and_not_sent(
     assert fake.asked == []
 
 
+def test_documents_may_hold_numbers_and_arrays_of_numpy_and_models(fake: FakeServer, client: VsseaClient) -> None:
+    fake.on("POST /api/batches", Answer(BATCH, 201))
+    values = {"kind": "list", "path": "seed", "values": np.arange(3)}
+    ends = {"kind": "grid", "path": "duration_s", "low": np.float32(0.5), "high": np.float64(2.0), "count": np.int64(4)}
+    client.batches.create({"scenario": NOMINAL, "vary": [values, ends], "seed": np.int64(7)})
+    sent = fake.asked[0].body
+    assert sent["scenario"] == NOMINAL.model_dump(mode="json")
+    assert sent["vary"] == [
+        values | {"values": [0, 1, 2]}, {**ends, "low": 0.5, "high": 2.0, "count": 4}
+    ]  # fmt: skip
+    assert sent["seed"] == 7
+
+
+WITHIN_ITSELF: dict[str, Any] = {}
+WITHIN_ITSELF["vary"] = WITHIN_ITSELF
+
+
+@pytest.mark.parametrize(
+    ("document", "words"),
+    [
+        ({"seed": {1, 2}}, "it holds a set; expected numbers, texts, lists and dicts"),
+        ({(1, 2): 3}, "keys must be str"),
+        ({"seed": float("nan")}, "expected finite numbers"),
+        ({"values": np.array([1.0, np.inf])}, "expected finite numbers"),
+        (WITHIN_ITSELF, "and nothing within itself"),
+    ],
+    ids=["set", "key", "nan", "array", "within itself"],
+)
+def test_what_json_cannot_hold_is_told_and_not_sent(
+    fake: FakeServer, client: VsseaClient, document: Any, words: str
+) -> None:
+    with pytest.raises(VsseaError, match=words):
+        client.batches.create(document)
+    assert fake.asked == []
+
+
+def test_what_a_header_cannot_hold_is_told_without_the_token(fake: FakeServer, client: VsseaClient) -> None:
+    for key in ("two\nlines", "\N{SNOWMAN}"):
+        with pytest.raises(VsseaError, match="a key or token is no text for a header; expected ASCII"):
+            client.batches.create({}, key=key)
+    with pytest.raises(VsseaError, match="a key or token") as raised:
+        VsseaClient(fake.address, token="secret\n").health()
+    assert "secret" not in str(raised.value)
+    assert fake.asked == []
+
+
 def test_waiting_tells_how_far_it_is_until_the_batch_has_ended(fake: FakeServer, client: VsseaClient) -> None:
     states = [BATCH | {"state": state} for state in ("queued", "running", "running", "done")]
     fake.on("GET /api/batches/b1", *map(Answer, states))
@@ -163,6 +211,35 @@ def test_tables_come_home_whole_or_by_column(fake: FakeServer, client: VsseaClie
     assert take("b1").to_pydict()["run"] == [0, 1]
     assert take("b1").schema == TABLE.schema
     assert take("b1", columns=["rms_error"]).column_names == ["rms_error"]
+
+
+@pytest.mark.parametrize("columns", [["nope"], ["run", "nope"], ("run", "rms_error", "nope")])
+def test_a_column_that_is_not_there_is_told_with_those_that_are(
+    fake: FakeServer, client: VsseaClient, columns: Any
+) -> None:
+    fake.on("GET /api/batches/b1/results.parquet", Answer(parquet(TABLE), media_type="application/vnd.apache.parquet"))
+    with pytest.raises(
+        VsseaError, match=r"^there is no column 'nope'; known here: run, tuning.model.link_inertia, rms"
+    ):
+        client.batches.results("b1", columns=columns)
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"PAR1 and no more", parquet(TABLE)[:-20] + b"PAR1"], ids=["empty", "short", "cut"]
+)
+def test_a_table_that_cannot_be_read_is_told(fake: FakeServer, client: VsseaClient, content: bytes) -> None:
+    fake.on("GET /api/batches/b1/results.parquet", Answer(content, media_type="application/vnd.apache.parquet"))
+    with pytest.raises(VsseaError, match=r"^the answer to GET /api/batches/b1/results.parquet cannot be read: "):
+        client.batches.results("b1")
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"time [s]\nsoon\n", b"time [s],limits\n1.0\n"], ids=["empty", "text", "short"]
+)
+def test_a_trajectory_that_cannot_be_read_is_told(fake: FakeServer, client: VsseaClient, content: bytes) -> None:
+    fake.on("POST /api/simulate?trajectory=csv&every=1&allow_unstable=false", Answer(content, media_type="text/csv"))
+    with pytest.raises(VsseaError, match=r"^the answer to POST /api/simulate cannot be read: "):
+        client.simulate({})
 
 
 def test_results_are_saved_under_their_name_once_they_are_whole(

@@ -28,7 +28,7 @@ def test_every_field_of_a_batch_is_told(model: type) -> None:
         assert (field.default if name == "kind" else name) in told
 
 
-def test_the_figures_of_the_example_are_told_in_words_as_in_the_table() -> None:
+def test_the_words_of_the_example_tell_the_figures_of_its_table() -> None:
     rows = re.findall(r"^\| ([^|]+) \| [\d.]+ mrad \| ([\d.]+) to ([\d.]+) \|", PAGE, re.MULTILINE)
     stood = {name: (round(100 - 100 * float(low)), round(100 * float(high) - 100)) for name, low, high in rows}
     words = " ".join(PAGE.split())

@@ -2,6 +2,7 @@
 
 import importlib.util
 import io
+import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,8 +11,13 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-SCRIPT = Path(__file__).parents[2] / "docs" / "examples" / "wrong_inertia.py"
+from vssea_core.scenarios import REALISTIC
+
+DOCS = Path(__file__).parents[2] / "docs"
+SCRIPT = DOCS / "examples" / "wrong_inertia.py"
 STEPS = 8  # factors of 1.19
+STEPS_OF_THE_PAGE = 120
+TOLD = re.compile(r"^\| ([^|]+) \| ([\d.]+) mrad \| ([\d.]+) to ([\d.]+) \| ([\d.]+) to ([\d.]+) \|$", re.MULTILINE)
 
 
 @pytest.fixture(scope="module")
@@ -41,6 +47,18 @@ def test_each_controller_stands_what_the_linear_analysis_foretells_to_a_step(exa
     image = io.BytesIO()
     example.drawn(results).savefig(image, dpi=50)
     assert image.getvalue().startswith(b"\x89PNG")
+
+
+def test_the_table_of_the_page_is_what_the_script_finds(example: ModuleType) -> None:
+    results = example.found(example.batch(STEPS_OF_THE_PAGE, REALISTIC.duration_s))
+    rows = {name: [*map(float, figures)] for name, *figures in TOLD.findall((DOCS / "batches.md").read_text("utf-8"))}
+    assert list(rows) == list(results)
+    step = 4.0 ** (1.0 / STEPS_OF_THE_PAGE)
+    for name, each in results.items():
+        error, *borders = rows[name]
+        assert abs(error - 1e3 * each.at_one) < 0.1, name
+        for told, found in zip(borders, (*each.stood, *each.linear), strict=True):  # a step, and the digits of the page
+            assert found / step - 0.005 <= told <= found * step + 0.005, name
 
 
 def test_an_end_or_an_error_beyond_the_limit_bounds_what_is_stood(example: ModuleType) -> None:

@@ -4,7 +4,7 @@ import difflib
 import math
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, JsonValue, field_validator, model_validator
+from pydantic import Field, JsonValue, ValidationInfo, field_validator, model_validator
 
 from vssea_core.channels import CHANNELS, INDEX
 from vssea_core.fields import Part, choice, kind, parameter
@@ -37,10 +37,10 @@ class Listed(Part):
 
     @field_validator("values")
     @classmethod
-    def _are_finite(cls, values: tuple[JsonValue, ...]) -> tuple[JsonValue, ...]:
+    def _are_finite(cls, values: tuple[JsonValue, ...], info: ValidationInfo) -> tuple[JsonValue, ...]:
         for place, value in enumerate(values):
             if not _is_finite(value):
-                raise ValueError(f"value {place} is or holds {value}; expected finite numbers")  # JSON has no others
+                raise ValueError(f"vary: value {place} of {info.data.get('path')} is {value}; expected finite numbers")
         return values
 
 
@@ -51,11 +51,6 @@ class Uniform(Part):
     low: Number
     high: Number
 
-    @model_validator(mode="after")
-    def _ends_in_order(self) -> Self:
-        _check_ends(self.low, self.high)
-        return self
-
 
 class LogUniform(Part):
     """Any value between two positive ends, each decade as likely as the others."""
@@ -63,11 +58,6 @@ class LogUniform(Part):
     kind: Literal["log_uniform"] = kind("log_uniform")
     low: Number = Field(gt=0.0)
     high: Number = Field(gt=0.0)
-
-    @model_validator(mode="after")
-    def _ends_in_order(self) -> Self:
-        _check_ends(self.low, self.high)
-        return self
 
 
 class Normal(Part):
@@ -88,6 +78,16 @@ class Draw(Part):
     path: Path
     distribution: Distribution
     factor: bool = Field(False, description="Whether the values are factors of what the base scenario has there.")
+
+    @model_validator(mode="after")
+    def _ends_are_in_order(self) -> Self:
+        if not isinstance(self.distribution, Normal):
+            low, high = self.distribution.low, self.distribution.high
+            if low > high:
+                raise ValueError(f"vary: {self.path} is drawn from {low:g} to {high:g}; expected the lower end first")
+            if not math.isfinite(high - low):
+                raise ValueError(f"vary: {self.path} is drawn from {low:g} to {high:g}; expected ends closer together")
+        return self
 
 
 class Sample(Part):
@@ -167,13 +167,6 @@ def count_of(variation: Grid | Listed | Sample | Zipped) -> int:
             return count_of(variation.members[0])
         case _:
             return variation.count
-
-
-def _check_ends(low: float, high: float) -> None:
-    if low > high:
-        raise ValueError(f"low is {low:g} and high {high:g}; expected low not above high")
-    if not math.isfinite(high - low):
-        raise ValueError(f"{low:g} and {high:g} are further apart than the largest number; expected closer ends")
 
 
 def _is_finite(value: JsonValue) -> bool:
