@@ -1,10 +1,11 @@
 import { arrange, element, setText } from "../element.js";
 import { when } from "../presets/when.js";
+import { RESUME } from "./batch_head.js";
 import { OneStop } from "./one_stop.js";
 import { showProgress } from "./progress.js";
-import { STATES, countWords, isActive, isPreparing, rateWords, runsWords, spanWords } from "./words.js";
+import { STATES, countWords, isActive, isPreparing, isResumable, rateWords, runsWords, sentence, spanWords } from "./words.js";
 
-/** The list of batches: how far each is, at what rate, how long still; cancel, delete, and open one. */
+/** The list of batches: how far each is, at what rate, how long still, why it failed; cancel, resume, delete, and open one. */
 export class BatchList {
   #lines = new Map();
   #isListed = false;
@@ -89,11 +90,13 @@ class BatchLine {
   constructor(list) {
     this.title = element("button", { type: "button", class: "batch-title", click: () => list.open(this.batch.id) });
     this.state = element("span", { class: "task-state" });
+    this.resume = element("button", { type: "button", class: "quiet", title: RESUME, click: () => list.batches.resume(this.batch.id) }, "Resume");
     this.cancel = element("button", { type: "button", class: "quiet", click: () => list.batches.cancel(this.batch.id) }, "Cancel");
     this.delete = element("button", { type: "button", class: "quiet", click: () => list.remove(this.batch) }, "Delete");
     this.progress = element("progress", { max: 1, "aria-label": "Progress" });
     this.words = element("p", { class: "task-reason" });
-    this.root = element("li", { class: "batch" }, element("div", { class: "task-line" }, this.title, this.state, this.cancel, this.delete), this.progress, this.words);
+    this.reason = element("p", { class: "task-reason batch-reason" });
+    this.root = element("li", { class: "batch" }, element("div", { class: "task-line" }, this.title, this.state, this.resume, this.cancel, this.delete), this.progress, this.words, this.reason);
   }
 
   mark(isShown) {
@@ -110,11 +113,18 @@ class BatchLine {
     setText(this.title, batch.name);
     this.title.title = `${batch.name}, ${when(batch.created_at)}`;
     setText(this.state, stateWord(batch));
-    for (const button of [this.cancel, this.delete]) button.setAttribute("aria-label", `${button.textContent} ${batch.name}`);
-    this.cancel.hidden = !active;
-    this.delete.hidden = active;
+    const focused = document.activeElement;
+    const isOffered = [[this.resume, isResumable(batch)], [this.cancel, active], [this.delete, !active]];
+    for (const [button, isShown] of isOffered) {
+      button.setAttribute("aria-label", `${button.textContent} ${batch.name}`);
+      button.hidden = !isShown;
+      if (!isShown && button === focused) this.title.focus();
+    }
     showProgress(this.progress, batch);
     setText(this.words, lineWords(batch));
+    setText(this.reason, sentence(batch.reason));
+    this.reason.dataset.state = batch.state;
+    this.reason.hidden = !batch.reason;
   }
 }
 
@@ -132,5 +142,5 @@ export function lineWords(batch) {
   if (batch.state === "queued") return `${runsWords(batch.runs)} · waits for the batches before it`;
   const { done = 0 } = batch.progress ?? {};
   const runs = batch.state === "done" ? runsWords(batch.runs) : `${countWords(done)} of ${runsWords(batch.runs)}`;
-  return [runs, when(batch.created_at), batch.state === "done" ? spanWords(batch.seconds) : batch.reason].filter(Boolean).join(" · ");
+  return [runs, when(batch.created_at), batch.state === "done" ? spanWords(batch.seconds) : ""].filter(Boolean).join(" · ");
 }

@@ -16,8 +16,8 @@ const REST = 4; // times as long as the results took to fetch, before they are f
 const NOTHING = "No results yet. Choose fields on the left and start a batch, or open one of the list.";
 const WITHOUT = {
   queued: "No results yet: it waits for the batches before it.",
-  cancelled: "It was cancelled before its first part was done: it has no results.",
-  failed: "It failed before its first part was done: it has no results.",
+  cancelled: "It was cancelled before its first part was done: it has no results. Resume computes them.",
+  failed: "It failed before its first part was done: it has no results. Resume tries again.",
   running: "No results yet: the first part is under way. Code that is used for the first time is compiled before it, which can take a minute, and some minutes after an installation.",
 };
 
@@ -27,13 +27,13 @@ export class BatchPage {
   #nextAt = 0;
   #seen = "";
 
-  /** @param {object} desk {session, theme} */
-  constructor({ session, theme }) {
+  /** @param {object} desk {session, theme, resume}, see BatchHead */
+  constructor({ session, theme, resume }) {
     this.batch = null;
     this.schema = null;
     this.isLost = false;
     this.table = new ResultTable();
-    this.head = new BatchHead();
+    this.head = new BatchHead(resume);
     this.choice = new PictureChoice(() => this.#need());
     this.plot = new PlotCanvas(new Palette(theme), (run) => this.showRun(run));
     this.unwell = new UnwellList((run) => this.showRun(run));
@@ -90,6 +90,12 @@ export class BatchPage {
     this.#seen = seen;
     if (!isActive(batch)) return this.#reload();
     this.#timer ??= setTimeout(() => this.#reload(), Math.max(0, this.#nextAt - performance.now()));
+  }
+
+  /** Ask for newer facts. */
+  async look() {
+    const batch = await batchRoutes.batch(this.table.id).catch(() => null); // the list says what is wrong
+    if (batch) this.take(batch);
   }
 
   /** Show one run. */

@@ -17,6 +17,7 @@ export const batchRoutes = {
   batch: (id) => rest("GET", batchAddress(id)),
   document: (id) => rest("GET", batchAddress(id, "document")),
   cancel: (id) => rest("POST", batchAddress(id, "cancel")),
+  resume: (id) => rest("POST", batchAddress(id, "resume")),
   remove: (id) => rest("DELETE", batchAddress(id)),
   results: (id, query) => rest("GET", batchAddress(id, "results", query), undefined, LONG_MS),
   run: (id, run) => rest("GET", batchAddress(id, `runs/${run}`), undefined, LONG_MS),

@@ -3,6 +3,7 @@ import { BatchForm } from "./batch_form.js";
 import { BatchList } from "./batch_list.js";
 import { BatchPage } from "./batch_page.js";
 import { Batches } from "./batches.js";
+import { isActive } from "./words.js";
 
 const VIEW = "batch";
 const STACKED = matchMedia("(max-width: 799px)");
@@ -17,12 +18,13 @@ export class BatchView {
     this.batches = new Batches(session);
     this.form = new BatchForm(session, (document, key) => this.#start(document, key));
     this.list = new BatchList(this.batches, ask, (id) => views.go(VIEW, id));
-    this.page = new BatchPage({ session, theme });
+    this.page = new BatchPage({ session, theme, resume: (id, hear) => this.batches.resume(id, hear) });
     root.append(
       element("div", { id: "batch-side" }, this.form.root, this.list.root),
       this.page.root,
     );
     this.batches.addEventListener("list", () => this.#listed());
+    this.batches.addEventListener("told", ({ detail }) => this.page.take(detail));
     views.addEventListener("change", () => this.#look());
     this.#look();
   }
@@ -63,7 +65,9 @@ export class BatchView {
     const { path, shown } = this.views;
     if (shown !== VIEW || !path) return;
     const batch = this.batches.get(path);
-    if (batch) this.page.take(batch);
-    else if (this.page.batch?.id === path && this.batches.total <= this.batches.list.length) this.views.go(VIEW, "");
+    if (batch) return this.page.take(batch);
+    if (this.page.batch?.id !== path) return;
+    if (this.batches.total <= this.batches.list.length) this.views.go(VIEW, "");
+    else if (isActive(this.page.batch)) this.page.look(); // it is older than those that are listed
   }
 }

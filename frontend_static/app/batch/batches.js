@@ -8,9 +8,10 @@ const RETRY_MS = 4000;
 /**
  * The server's batches, newest first, looked at again while one runs and somebody looks.
  *
- * Events: `list`, `problem`.
+ * Events: `list`, `problem`; `told` with the batch that the server answered with.
  */
 export class Batches extends EventTarget {
+  #resumed = new Set(); // until the server has answered
   #isShown = false;
   #timer = null;
   #asked = 0;
@@ -68,19 +69,28 @@ export class Batches extends EventTarget {
     return this.#change(() => batchRoutes.cancel(id));
   }
 
+  /** Let it go on with the parts that are missing. @param {string} id @param {(problem: string) => void} [hear] says why it cannot */
+  async resume(id, hear = (problem) => this.#say(problem)) {
+    if (this.#resumed.has(id)) return;
+    this.#resumed.add(id);
+    await this.#change(() => batchRoutes.resume(id), hear);
+    this.#resumed.delete(id);
+  }
+
   remove(id) {
     return this.#change(() => batchRoutes.remove(id));
   }
 
-  async #change(act) {
+  async #change(act, hear = (problem) => this.#say(problem)) {
     let problem = "";
     try {
-      await act();
+      const told = await act();
+      if (told?.id) this.dispatchEvent(new CustomEvent("told", { detail: told }));
     } catch (refusal) {
       problem = refusal.message;
     }
     await this.refresh();
-    if (problem) this.#say(problem);
+    if (problem) hear(problem);
   }
 
   #say(problem) {

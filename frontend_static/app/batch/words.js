@@ -27,6 +27,11 @@ export function isActive({ state }) {
   return state === "queued" || state === "running";
 }
 
+/** @returns {boolean} whether the parts that are missing can still be computed: it was cancelled, or failed */
+export function isResumable({ state }) {
+  return state === "cancelled" || state === "failed";
+}
+
 /** @returns {boolean} whether no part of it is there yet: perhaps its code is compiled first */
 export function isPreparing({ state, progress }) {
   return state === "running" && !progress?.done;
@@ -39,6 +44,12 @@ export function countsWords(counts) {
   if (ended) parts.push(`${countWords(ended)} ended early`);
   if (refused) parts.push(`${countWords(refused)} refused`);
   return parts.join(", ");
+}
+
+/** @returns {string} what the server tells without capital and full stop, as a sentence; "" stays so */
+export function sentence(words) {
+  if (!words) return "";
+  return `${words[0].toUpperCase()}${words.slice(1)}${/[.!?]$/.test(words) ? "" : "."}`;
 }
 
 /** @returns {string} "1 run", "441 runs" */
