@@ -353,15 +353,17 @@ def test_a_batch_that_cannot_be_resumed_stays_as_the_server_tells_it(running: Se
 
 def test_a_warning_of_the_estimate_is_shown_and_start_stays_possible(running: Server, open_page: OpenPage) -> None:
     page = open_page(running)
-    warned = {"warning": "none of the 64 runs looked at can start", "refused": ["Run 0: too soft", "Run 2: too soft"]}
-    page.route("**/api/batches/estimate", lambda route: route.fulfill(json=route.fetch().json() | warned))
     batch_view(page)
-    vary(page, "link inertia", LINK)
+    vary(page, "softest", SOFTEST)
+    softest = page.locator(".variation")
+    for name, value in (("lowest", "290"), ("highest", "300"), ("number of values", "100")):
+        softest.get_by_label(name).fill(value)
     estimate = page.get_by_role("status", name="Estimate")
     expect(estimate.locator(".form-problem")).to_have_text("None of the 64 runs looked at can start.")
-    expect(estimate.locator("li")).to_have_text(warned["refused"])
-    expect(estimate.locator("dd").first).to_be_visible()
-    expect(page.get_by_role("button", name="Start")).to_be_enabled()
+    expect(estimate.locator("li")).to_have_text([re.compile("^Run .*the end stops")] * 3)
+    expect(estimate.locator("dd").first).to_have_text("100")
+    page.get_by_role("button", name="Start").click()
+    expect(page.locator(".batch-head")).to_contain_text("100 runs: 0 done, 100 refused.")
 
 
 @contextmanager
