@@ -6,6 +6,7 @@ was ended.
 
 import os
 import shutil
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -19,17 +20,40 @@ from backend.batch.version import model_version
 FORMS = {".parquet": "parquet", ".csv": "csv", ".arrow": "arrow"}
 
 
-class BesideOutput:
-    """The parts of the table that is to become `output`, in OUTPUT.parts."""
+class OutputExists(ValueError):
+    """Something stands where the output is to be written, and nobody has said that it may go."""
 
-    def __init__(self, output: Path) -> None:
+
+class BesideOutput:
+    """The parts of the table that is to become `output`, in OUTPUT.parts.
+
+    `samples` says whether any may be kept, `replace` whether an output that is there already may go.
+    """
+
+    def __init__(self, output: Path, samples: bool = True, replace: bool = False) -> None:
         self.output, self.path = output, output.with_name(f"{output.name}.parts")
         self.folder = BatchFolder(self.path)
+        self._samples, self._replace = samples, replace
 
     @property
     def trajectories(self) -> Path:
         """Where the samples kept go."""
         return self.output.with_name(f"{self.output.stem}-trajectories{self.output.suffix}")
+
+    def check(self) -> None:
+        """Raise ValueError or OSError if the output has no folder to be in, OutputExists if it is there and has to stay."""
+        folder = self.output.parent
+        if not folder.is_dir():
+            raise ValueError(
+                f"{self.output} cannot be written: folder {folder} does not exist; make it, or write elsewhere"
+            )
+        with tempfile.TemporaryFile(dir=folder):
+            pass  # a folder that takes a file now takes the parts
+        for target in (self.output, self.trajectories) if self._samples else (self.output,):
+            if target.is_dir():
+                raise ValueError(f"{target} is a folder; expected the name of a file to write")
+            if os.path.lexists(target) and not self._replace:
+                raise OutputExists(f"{target} exists; add --force to replace it, or write elsewhere")
 
     @contextmanager
     def held(self) -> Iterator[None]:
@@ -69,16 +93,23 @@ class BesideOutput:
         return division.part_size
 
     def finish(self) -> list[Path]:
-        """Write the output, and the samples if any were kept, remove the parts, and return what was written. Raises OSError."""
+        """Write the output, and the samples if any were kept, remove the parts, and return what was written.
+
+        Raises OSError, OutputExists if somebody has written it meanwhile.
+        """
         targets = {"results": self.output} | ({"trajectories": self.trajectories} if self.folder.trajectories() else {})
-        for what, target in targets.items():
-            _, written = export(str(self.path), what, FORMS[target.suffix], str(self.path))
-            Path(written).chmod(0o666 & ~_umask())
-            Path(written).replace(target)
-        if "trajectories" not in targets:
-            self.trajectories.unlink(missing_ok=True)  # of an earlier batch with this output
+        written = {
+            target: Path(export(str(self.path), what, FORMS[target.suffix], str(self.path))[1])
+            for what, target in targets.items()
+        }
+        self.check()
+        for target, whole in written.items():
+            whole.chmod(0o666 & ~_umask())
+            whole.replace(target)
+        if self._samples and self._replace and self.trajectories not in written:
+            self.trajectories.unlink(missing_ok=True)  # beside the new output those of an old one would mislead
         shutil.rmtree(self.path)
-        return [*targets.values()]
+        return [*written]
 
 
 def _umask() -> int:

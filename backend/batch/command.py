@@ -35,12 +35,13 @@ def batch(
         str | None, typer.Option(help="Compute on the cluster of this Dask scheduler, such as tcp://127.0.0.1:8786.")
     ] = None,
     estimate: Annotated[bool, typer.Option(help="Only tell how many runs, seconds and bytes it would take.")] = False,
+    force: Annotated[bool, typer.Option(help="Replace an output that is there already.")] = False,
 ) -> None:
     """Run a batch of scenarios here and write a row for each run; docs/batches.md says what a batch is.
 
     Ctrl+C ends it and keeps what is done: the same command goes on from there.
     """
-    from backend.batch.beside_output import FORMS
+    from backend.batch.beside_output import FORMS, BesideOutput, OutputExists
     from backend.batch.engine import PartFailed
 
     output = output or Path(f"{'batch' if file == '-' else Path(file).stem}.parquet")
@@ -48,22 +49,24 @@ def batch(
         refuse(f"{output} cannot be written: expected a name ending in {', '.join(FORMS)}")
     if dask is not None and workers is not None:
         refuse("--workers is of this machine and --dask of a cluster; expected one of them")
-    document = _document(file)
+    document, samples = _document(file)
+    beside = BesideOutput(output, samples, force)
     try:
-        asyncio.run(_run(document, output, workers or os.cpu_count() or 1, dask, estimate))
+        if not estimate:
+            beside.check()
+        asyncio.run(_run(document, beside, workers or os.cpu_count() or 1, dask, estimate))
     except KeyboardInterrupt:
         typer.echo(f"vssea: ended{_goes_on(output)}", err=True)
         raise typer.Exit(ENDED_BY_USER) from None
-    except PartFailed as failure:
+    except (PartFailed, OutputExists) as failure:
         refuse(f"{failure}{_goes_on(output)}")
     except ValueError as refusal:
         refuse(str(refusal))
     except OSError as error:
-        refuse(f"{output} cannot be written: {error}")
+        refuse(f"{output} cannot be written: {error}{_goes_on(output)}")
 
 
-async def _run(document: str, output: Path, workers: int, address: str | None, only_estimate: bool) -> None:
-    from backend.batch.beside_output import BesideOutput
+async def _run(document: str, beside: "BesideOutput", workers: int, address: str | None, only_estimate: bool) -> None:
     from backend.batch.estimate import estimate_of, why_refused
     from backend.batch.jobs import plan_batch
 
@@ -79,8 +82,8 @@ async def _run(document: str, output: Path, workers: int, address: str | None, o
             return
         if why := why_refused(plan):
             refuse(why)
-        beside = BesideOutput(output)
         with beside.held():
+            beside.check()  # another command may have written it meanwhile
             await _compute(engine, document, plan, beside)
     finally:
         await engine.end()
@@ -132,8 +135,8 @@ def _engine(workers: int, address: str | None) -> Any:
         refuse(str(refusal))
 
 
-def _document(file: str) -> str:
-    """Return a batch's document, whole and always written the same way."""
+def _document(file: str) -> tuple[str, bool]:
+    """Return a batch's document, whole and always written the same way, and whether samples may be kept."""
     from backend.batch.limits import runs_of
     from backend.problem import Problem, from_validation
     from vssea_core.batch.document import Batch
@@ -142,7 +145,7 @@ def _document(file: str) -> str:
         text = sys.stdin.read() if file == "-" else Path(file).read_text("utf-8")
         batch = Batch.model_validate_json(text)
         _limits().check_runs(runs_of(batch))
-        return batch.model_dump_json()
+        return batch.model_dump_json(), batch.keep.trajectories != "none"
     except Problem as refusal:
         refuse(refusal.detail)
     except ValidationError as error:

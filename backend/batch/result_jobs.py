@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
-import pyarrow.csv
 import pyarrow.ipc
 import pyarrow.parquet as pq
 
+from backend.batch.csv_file import write_csv
 from backend.batch.folder import BatchFolder
 
 LONG: frozenset[str] = frozenset()
@@ -136,12 +136,13 @@ def _plain(value: Any) -> Any:
 
 
 def _write(form: str, schema: pa.Schema, tables: Iterable[pa.Table], path: str) -> None:
+    if form == "csv":
+        write_csv(path, schema.names, tables)
+        return
     if form == "parquet":
         writer: Any = pq.ParquetWriter(path, schema, compression="zstd")
-    elif form == "arrow":
-        writer = pyarrow.ipc.new_stream(path, schema)
     else:
-        writer = pyarrow.csv.CSVWriter(path, schema)
+        writer = pyarrow.ipc.new_stream(path, schema)
     with writer:
         for table in tables:
             writer.write_table(table)

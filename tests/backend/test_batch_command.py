@@ -206,7 +206,7 @@ def test_a_second_command_is_kept_away_from_the_first_ones_parts_until_the_outpu
     assert len(refused) == (1 if when == "it computes" else 2)
     assert pq.read_table(output).to_pydict() == expected()
     with second.held():
-        second_try = vssea(file, "-o", output)
+        second_try = vssea(file, "-o", output, "--force")
     assert (second_try.exit_code, second_try.stderr) == (2, f"vssea: {refused[0]}\n")
     assert sorted(path.name for path in file.parent.iterdir()) == [
         "batch.json",
@@ -290,6 +290,66 @@ def test_without_an_output_the_table_is_named_after_the_file(
     assert pyarrow.csv.read_csv(file.with_name("other.csv")).num_rows == 40
 
 
+@pytest.mark.parametrize("name", ["out.parquet", "out-trajectories.parquet"])
+def test_a_file_that_is_there_is_never_replaced_unasked(here: Here, file: Path, name: str) -> None:
+    there, output = file.with_name(name), file.with_name("out.parquet")
+    there.write_text("of somebody")
+    outcome = vssea(file, "-o", output)
+    assert outcome.exit_code == 2
+    assert outcome.stderr == f"vssea: {there} exists; add --force to replace it, or write elsewhere\n"
+    assert (there.read_text(), here.computed) == ("of somebody", [])
+    assert sorted(path.name for path in file.parent.iterdir()) == ["batch.json", name]
+    assert vssea(file, "-o", output, "--estimate").exit_code == 0
+    assert vssea(file, "-o", output, "--force").exit_code == 0
+    assert pq.read_table(output).to_pydict() == expected()
+    assert pq.read_table(file.with_name("out-trajectories.parquet")).num_rows == 40 * 2
+
+
+def test_a_file_that_this_batch_does_not_write_stays(here: Here, file: Path) -> None:
+    file.write_text(BATCH.model_copy(update={"keep": Keep()}).model_dump_json(), "utf-8")
+    mine = file.with_name("keep-trajectories.parquet")
+    mine.write_text("of somebody")
+    for force in ([], ["--force"]):
+        assert vssea(file, "-o", file.with_name("keep.parquet"), *force).exit_code == 0
+        assert mine.read_text() == "of somebody"
+
+
+def test_samples_of_a_replaced_output_go_with_it(here: Here, file: Path) -> None:
+    assert vssea(file, "-o", file.with_name("out.csv")).exit_code == 0
+    file.write_text(BATCH.model_copy(update={"keep": Keep(trajectories="ended")}).model_dump_json(), "utf-8")
+    assert vssea(file, "-o", file.with_name("out.csv"), "--force").exit_code == 0  # and none of its runs ended early
+    assert sorted(path.name for path in file.parent.iterdir()) == ["batch.json", "out.csv"]
+
+
+def test_an_output_that_somebody_writes_meanwhile_is_not_replaced(here: Here, file: Path) -> None:
+    output = file.with_name("out.parquet")
+    here.before = lambda number: output.write_text("of somebody") and None
+    outcome = vssea(file, "-o", output)
+    assert outcome.exit_code == 2
+    assert outcome.stderr == (
+        f"vssea: {output} exists; add --force to replace it, or write elsewhere; "
+        f"what is done is kept in {output}.parts, and the same command goes on from there\n"
+    )
+    assert output.read_text() == "of somebody"
+    assert vssea(file, "-o", output, "--force").exit_code == 0
+    assert here.computed == [0, 1, 2]
+    assert pq.read_table(output).to_pydict() == expected()
+
+
+def test_a_place_where_nothing_can_be_written_is_told_before_anything_is_computed(here: Here, file: Path) -> None:
+    folder = file.with_name("dir.parquet")
+    folder.mkdir()
+    outcome = vssea(file, "-o", folder)
+    assert (outcome.exit_code, outcome.stderr) == (
+        2, f"vssea: {folder} is a folder; expected the name of a file to write\n"
+    )  # fmt: skip
+    nowhere = file.with_name("new") / "out.csv"
+    assert f"folder {nowhere.parent} does not exist" in vssea(file, "-o", nowhere, "--force").stderr
+    assert "cannot be written" in vssea(file, "-o", "/proc/out.csv").stderr
+    assert here.computed == []
+    assert sorted(path.name for path in file.parent.iterdir()) == ["batch.json", "dir.parquet"]
+
+
 def test_an_estimate_is_told_and_nothing_is_written(here: Here, file: Path) -> None:
     outcome = vssea(file, "--estimate", "-o", file.with_name("out.parquet"))
     assert outcome.exit_code == 0, outcome.stderr
@@ -317,7 +377,7 @@ HEAVY = json.dumps({"vary": [{"kind": "list", "path": "timing.sample_time_s", "v
         ),
         (["-"], HEAVY, "no run of this batch can start; Run 0: "),
         (["-", "-o", "out.xlsx"], "{}", "expected a name ending in .parquet, .csv, .arrow"),
-        (["-", "-o", "no/such/folder/out.csv"], "{}", "no/such/folder/out.csv cannot be written"),
+        (["-", "-o", "no/such/out.csv"], "{}", "no/such/out.csv cannot be written: folder no/such does not exist"),
         (["-", "--dask", "somewhere"], "{}", "is no address of a Dask scheduler"),
         (["-", "--dask", "tcp://127.0.0.1:1", "--workers", "2"], "{}", "expected one of them"),
     ],
