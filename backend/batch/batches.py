@@ -106,6 +106,7 @@ class Batches:
         asked = await self._admission.read(body)
         if key is not None and (found := await asyncio.to_thread(self._catalogue.find_key, key)):
             return same(found, asked.digest), False
+        await self._queue.hold()
         row = await self._admission.row(asked, key)
         self._limits.check_waiting(self._queue.length)
         async with self._turn:
@@ -134,13 +135,20 @@ class Batches:
 
     async def cancel(self, batch: str) -> Document:
         """End a batch that waits or runs, and return its document; the parts that are done stay. Raises Problem."""
-        await self._queue.cancel(batch)
-        return await self.document(batch)
+        row = await self.row(batch)
+        if row.state in ACTIVE:
+            await self._queue.cancel(batch)
+        found = await self.document(batch)
+        if found["state"] in ACTIVE:
+            why = f"The batch {row.name!r} is {found['state']}, but this server has not taken it up"
+            raise Problem(409, "Not cancelled", f"{why}; try again, or start the server anew.")
+        return found
 
     async def resume(self, batch: str) -> Document:
         """Let a batch that has ended wait for its turn again, for the parts that are missing. Raises Problem."""
         async with self._turn:
             row = await self.row(batch)
+            await self._queue.hold()
             if row.state in ACTIVE:
                 raise Problem(409, "Not ended", f"The batch {row.name!r} is {row.state}; there is nothing to resume.")
             self._limits.check_waiting(self._queue.length)
@@ -155,6 +163,7 @@ class Batches:
         """Delete a batch that has ended, with its results. Raises Problem."""
         async with self._turn:
             row = await self.row(batch)
+            await self._queue.hold()
             if row.state in ACTIVE:
                 raise Problem(409, "Not ended", f"The batch {row.name!r} is {row.state}; cancel it first.")
             try:
@@ -173,6 +182,7 @@ class Batches:
         self._news.tell(row.id, "deleted", 0.0)
 
     async def _swept(self) -> None:
+        await self._queue.held.wait()  # another server may be making a batch
         async with self._turn:
             try:
                 await asyncio.to_thread(lambda: sweep(self.folder, self._catalogue.ids()))

@@ -55,7 +55,7 @@ def test_a_batch_that_cannot_be_kept_leaves_no_folder(tmp_path: Path, monkeypatc
         with pytest.raises(Problem, match="cannot be written: No space left on device") as problem:
             await bench.create()
         assert problem.value.status == 507
-        assert [*(bench.folder / "batches").iterdir()] == []
+        assert [*(bench.folder / "batches").glob("20*")] == []
 
     with_bench(tmp_path, work)
 
@@ -104,7 +104,7 @@ def test_a_start_finishes_what_a_kill_has_left_half_made_or_half_deleted(
         assert bench.parts(kept[0]) == list(range(10))
 
     with_bench(tmp_path, after)
-    left = sorted(path.name for path in folder.iterdir())
+    left = sorted(path.name for path in folder.iterdir() if path.is_dir())
     assert left == sorted([*kept, names[2], f"{names[3]}.deleted", "mine"])
     assert f"{names[2]} holds results that no batch of the database names" in caplog.text
 
