@@ -169,17 +169,23 @@ class Batches:
             try:
                 deleted = await asyncio.to_thread(self.folder_of(row).renamed, DELETED)
             except OSError as error:
-                why = f"The files of the batch {row.name!r} cannot be removed: {error.strerror or error}."
-                raise Problem(
-                    507, "Not deleted", f"{why} It is left as it is; see to the rights of {self.folder}."
-                ) from error
+                raise self._not_deleted(row, error) from error
             try:
                 await asyncio.to_thread(self._catalogue.forget, batch)
             except Problem:
                 await asyncio.to_thread(deleted.renamed, "")
                 raise
-        await _removed(deleted)
+            try:
+                await asyncio.to_thread(deleted.delete)
+            except OSError as error:
+                await asyncio.to_thread(self._catalogue.add, row)  # so that it can be seen, resumed, deleted again
+                await asyncio.to_thread(deleted.renamed, "")
+                raise self._not_deleted(row, error) from error
         self._news.tell(row.id, "deleted", 0.0)
+
+    def _not_deleted(self, row: Row, error: OSError) -> Problem:
+        why = f"The files of the batch {row.name!r} cannot be removed: {error.strerror or error}."
+        return Problem(507, "Not deleted", f"{why} It is still listed; see to the rights of {self.folder}.")
 
     async def _swept(self) -> None:
         await self._queue.held.wait()  # another server may be making a batch

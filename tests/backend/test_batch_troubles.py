@@ -79,6 +79,29 @@ def test_a_batch_that_the_database_cannot_forget_keeps_its_results(
     with_bench(tmp_path, work)
 
 
+@pytest.mark.parametrize("fails", ["renamed", "delete"])
+def test_a_batch_whose_files_cannot_be_removed_is_not_said_to_be_deleted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: str
+) -> None:
+    def fail(*_: object) -> None:
+        raise OSError(30, "Read-only file system")
+
+    async def work(bench: Bench) -> None:
+        batch = await bench.create()
+        await bench.ended(batch)
+        with monkeypatch.context() as read_only:
+            read_only.setattr(BatchFolder, fails, fail)
+            with pytest.raises(Problem, match="cannot be removed: Read-only file system") as problem:
+                await bench.batches.delete(batch)
+        assert problem.value.status == 507
+        assert (await bench.state(batch), bench.parts(batch)) == ("done", list(range(10)))
+        assert bench.news[-1]["state"] == "done"
+        await bench.batches.delete(batch)
+        assert not (bench.folder / "batches" / batch).exists()
+
+    with_bench(tmp_path, work)
+
+
 def test_a_start_finishes_what_a_kill_has_left_half_made_or_half_deleted(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
