@@ -9,6 +9,7 @@ from backend.api.reading import channels_in, named_file, read
 from backend.api.resources import body_named, content_of
 from backend.batch.batches import Batches
 from backend.batch.catalogue import Row
+from backend.batch.listed import whole_parts, why_none
 from backend.compute.pool import Pool
 from backend.problem import Problem
 
@@ -85,8 +86,9 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
         columns: str = "",
     ) -> Response:
         """Return rows of the runs that are computed, in their order; without columns all of them."""
-        path = str(batches.folder_of(await batches.row(batch)).path)
-        content = await read(batches.results.run("page", path, offset, limit, channels_in(columns) or None), "batch")
+        row = await batches.row(batch)
+        path, asked = str(batches.folder_of(row).path), channels_in(columns) or None
+        content = await read(batches.results.run("page", path, offset, limit, asked, whole_parts(row)), "batch")
         return Response(content, media_type="application/json")
 
     @router.get("/{batch}/results.{form}")
@@ -105,7 +107,8 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
         row = await found(batch, number)
         path = await batches.document_path(row)
         values = await read(batches.plans.run("values_of", str(path), number), "batch")
-        kept = await read(batches.results.run("row", str(path.parent), number, number // row.part_size), "batch")
+        part = number // row.part_size
+        kept = await read(batches.results.run("row", str(path.parent), number, part, whole_parts(row)), "batch")
         known = {} if kept is None else {name: value for name, value in kept.items() if name not in values}
         return {"run": number, "values": values, "state": "waiting", **known}
 
@@ -131,7 +134,9 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
                 404, "No trajectories", "This batch keeps no trajectories; start one whose document keeps them."
             )
         path = str(batches.folder_of(row).path)
-        job = batches.results.run("export", path, what, form, folder, time_limit_s=EXPORT_LIMIT_S)
+        job = batches.results.run(
+            "export", path, what, form, folder, whole_parts(row), why_none(row, what), time_limit_s=EXPORT_LIMIT_S
+        )
         media_type, file = await read(job, "batch")
         return named_file(file, media_type, f"{row.id}-{what}.{form}")
 

@@ -106,6 +106,7 @@ class Batches:
         asked = await self._admission.read(body)
         if key is not None and (found := await asyncio.to_thread(self._catalogue.find_key, key)):
             return same(found, asked.digest), False
+        await self._queue.hold()
         row = await self._admission.row(asked, key)
         self._limits.check_waiting(self._queue.length)
         async with self._turn:
@@ -134,13 +135,20 @@ class Batches:
 
     async def cancel(self, batch: str) -> Document:
         """End a batch that waits or runs, and return its document; the parts that are done stay. Raises Problem."""
-        await self._queue.cancel(batch)
-        return await self.document(batch)
+        row = await self.row(batch)
+        if row.state in ACTIVE:
+            await self._queue.cancel(batch)
+        found = await self.document(batch)
+        if found["state"] in ACTIVE:
+            why = f"The batch {row.name!r} is {found['state']}, but this server has not taken it up"
+            raise Problem(409, "Not cancelled", f"{why}; try again, or start the server anew.")
+        return found
 
     async def resume(self, batch: str) -> Document:
         """Let a batch that has ended wait for its turn again, for the parts that are missing. Raises Problem."""
         async with self._turn:
             row = await self.row(batch)
+            await self._queue.hold()
             if row.state in ACTIVE:
                 raise Problem(409, "Not ended", f"The batch {row.name!r} is {row.state}; there is nothing to resume.")
             self._limits.check_waiting(self._queue.length)
@@ -155,24 +163,32 @@ class Batches:
         """Delete a batch that has ended, with its results. Raises Problem."""
         async with self._turn:
             row = await self.row(batch)
+            await self._queue.hold()
             if row.state in ACTIVE:
                 raise Problem(409, "Not ended", f"The batch {row.name!r} is {row.state}; cancel it first.")
             try:
                 deleted = await asyncio.to_thread(self.folder_of(row).renamed, DELETED)
             except OSError as error:
-                why = f"The files of the batch {row.name!r} cannot be removed: {error.strerror or error}."
-                raise Problem(
-                    507, "Not deleted", f"{why} It is left as it is; see to the rights of {self.folder}."
-                ) from error
+                raise self._not_deleted(row, error) from error
             try:
                 await asyncio.to_thread(self._catalogue.forget, batch)
             except Problem:
                 await asyncio.to_thread(deleted.renamed, "")
                 raise
-        await _removed(deleted)
+            try:
+                await asyncio.to_thread(deleted.delete)
+            except OSError as error:
+                await asyncio.to_thread(self._catalogue.add, row)  # so that it can be seen, resumed, deleted again
+                await asyncio.to_thread(deleted.renamed, "")
+                raise self._not_deleted(row, error) from error
         self._news.tell(row.id, "deleted", 0.0)
 
+    def _not_deleted(self, row: Row, error: OSError) -> Problem:
+        why = f"The files of the batch {row.name!r} cannot be removed: {error.strerror or error}."
+        return Problem(507, "Not deleted", f"{why} It is still listed; see to the rights of {self.folder}.")
+
     async def _swept(self) -> None:
+        await self._queue.held.wait()  # another server may be making a batch
         async with self._turn:
             try:
                 await asyncio.to_thread(lambda: sweep(self.folder, self._catalogue.ids()))

@@ -28,8 +28,10 @@ TOLD_ERRORS = 100
 
 def read_batch(body: bytes) -> Asked | Problem:
     """Return the batch in the body of a request, or what is wrong with it."""
+    if not body.strip():
+        return Problem(400, "Not JSON", "The body is empty; expected the document of a batch as JSON.")
     try:
-        batch = Batch.model_validate_json(body.strip() or b"{}")
+        batch = Batch.model_validate_json(body)
     except ValidationError as error:
         if (first := error.errors(include_url=False)[0])["type"] == "json_invalid":
             return Problem(400, "Not JSON", f"The body is not JSON: {first['ctx']['error']}.")

@@ -2,8 +2,10 @@
 
 from typing import Any
 
-from backend.batch.catalogue import Row
+from backend.batch.catalogue import ACTIVE, Row
 from backend.batch.progress import STATES, RunCounts
+
+STOPPED = {"cancelled": "was cancelled", "failed": "failed"}
 
 
 def listed(row: Row, progress: RunCounts | None = None) -> dict[str, Any]:
@@ -29,3 +31,19 @@ def _kept(row: Row) -> dict[str, Any]:
         },
         "counts": counts, "rate": row.summary.get("rate"), "seconds_left": None,
     }  # fmt: skip
+
+
+def whole_parts(row: Row) -> int:
+    """Return how many parts there have to be: all of a batch that is done."""
+    return row.parts if row.state == "done" else 0
+
+
+def why_none(row: Row, what: str) -> str:
+    """Return why there are no `what`, "results" or "trajectories", in one sentence without its stop."""
+    if row.state in ACTIVE:
+        return f"there are no {what} yet; wait for the first part that has any"
+    if row.state != "done":
+        which = "that kept any samples" if what == "trajectories" else "was kept"
+        return f"this batch {STOPPED[row.state]} before a part {which}; resume it, and it goes on"
+    which = "ended early" if row.summary["trajectories"] == "ended" else "could start"
+    return f"no run of this batch {which}, so no samples were kept"

@@ -11,6 +11,7 @@ from pathlib import Path
 from backend.batch.catalogue import BatchCatalogue, Row
 from backend.batch.engine import Engine
 from backend.batch.folder import BatchFolder
+from backend.batch.folder_lock import FolderLock
 from backend.batch.limits import Limits
 from backend.batch.news import News
 from backend.batch.running import UNEXPECTED, Running
@@ -40,6 +41,10 @@ class BatchQueue:
         self._results, self._news, self._times = results, news, times
         self._waiting: deque[Row] = deque()
         self._woken = asyncio.Event()
+        self._lock, self._taking = FolderLock(folder), asyncio.Lock()
+        self._taken_up = asyncio.Event()
+        self.held = asyncio.Event()
+        """Set when this server is the one that runs the batches of the folder."""
         self._work: asyncio.Task[None] | None = None
         self.running: Running | None = None
 
@@ -58,6 +63,14 @@ class BatchQueue:
         if self._work is not None:
             self._work.cancel()
             await asyncio.gather(self._work, return_exceptions=True)
+        await asyncio.to_thread(self._lock.give_back)
+
+    async def hold(self) -> None:
+        """Be the one that runs the batches of the folder. Raises Problem while another server is."""
+        async with self._taking:
+            if not self.held.is_set():
+                await asyncio.to_thread(self._lock.take)
+                self.held.set()
 
     def add(self, row: Row) -> None:
         """Let a batch wait for its turn, unless it does so already."""
@@ -67,6 +80,11 @@ class BatchQueue:
 
     async def cancel(self, batch: str) -> None:
         """End a batch if it waits or runs; the parts that are done stay. Raises Problem."""
+        await self.hold()
+        if not await self._set_within(self._taken_up, CANCEL_LIMIT_S):
+            raise Problem(
+                503, "Not taken up", "The batches that were left are not taken up yet; try again in a moment."
+            )
         running = self.running
         if running is not None and running.row.id == batch:
             running.cancel()
@@ -87,12 +105,26 @@ class BatchQueue:
             await self.running.ended.wait()
 
     async def _run_all(self) -> None:
+        await self._hold_sometime()
         self._waiting.extendleft(reversed(await self._left_over()))
+        self._taken_up.set()
         while True:
             while self._waiting:
                 await self._run(self._waiting.popleft())
             self._woken.clear()
             await self._woken.wait()
+
+    async def _hold_sometime(self) -> None:
+        """Wait until no other server runs the batches of the folder; what it leaves is then taken up."""
+        is_told = False
+        while not self.held.is_set():
+            try:
+                await self.hold()
+            except Problem as problem:
+                if not is_told:
+                    logger.warning("no batch is computed here: %s", problem.detail)
+                is_told = True
+                await self._set_within(self.held, RETRY_S)
 
     async def _run(self, row: Row) -> None:
         begun = replace(row, state="running", started_at=row.started_at or self._times.text())
@@ -148,19 +180,25 @@ class BatchQueue:
 
     async def _within_limit(self, running: Running) -> None:
         """Wait until what became of a batch is kept. Raises Problem if the database takes too long."""
-        ended, limit = asyncio.create_task(running.ended.wait()), asyncio.create_task(self._times.sleep(CANCEL_LIMIT_S))
-        try:
-            await asyncio.wait({ended, limit}, return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            ended.cancel()
-            limit.cancel()
-        if not running.ended.is_set():
+        if not await self._set_within(running.ended, CANCEL_LIMIT_S):
             raise Problem(
                 503,
                 "Not kept",
                 f"The batch {running.row.name!r} ends, but the database could not keep that within {CANCEL_LIMIT_S:g} s. "
                 "It is kept as soon as the database can be used; look again then.",
             )
+
+    async def _set_within(self, event: asyncio.Event, limit_s: float) -> bool:
+        """Wait for an event, but not for ever; return whether it is set."""
+        if event.is_set():
+            return True
+        is_set, limit = asyncio.create_task(event.wait()), asyncio.create_task(self._times.sleep(limit_s))
+        try:
+            await asyncio.wait({is_set, limit}, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            is_set.cancel()
+            limit.cancel()
+        return event.is_set()
 
     async def _left_over(self) -> Sequence[Row]:
         while True:

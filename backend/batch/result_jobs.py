@@ -18,6 +18,7 @@ from backend.batch.csv_file import write_csv
 from backend.batch.folder import BatchFolder
 
 LONG: frozenset[str] = frozenset()
+TOLD_PARTS = 5
 MEDIA_TYPES = {
     "parquet": "application/vnd.apache.parquet",
     "csv": "text/csv; charset=utf-8",
@@ -31,8 +32,12 @@ def counts_by_part(folder: str) -> dict[int, dict[str, int] | None]:
     return {number: _counts(batch, number) for number in batch.parts()}
 
 
-def page(folder: str, offset: int, limit: int, columns: list[str] | None) -> bytes:
-    """Return rows `offset` to `offset + limit` of those that are there, as JSON. Raises ValueError for an unknown column."""
+def page(folder: str, offset: int, limit: int, columns: list[str] | None, parts: int = 0) -> bytes:
+    """Return rows `offset` to `offset + limit` of those that are there, as JSON.
+
+    Raises ValueError for an unknown column, and if there are less than `parts`.
+    """
+    _check_whole(folder, parts)
     total, names, rows = 0, columns, list[tuple[Any, ...]]()
     for path in _rows_in(folder):
         count = _count(path)
@@ -46,24 +51,28 @@ def page(folder: str, offset: int, limit: int, columns: list[str] | None) -> byt
     return json.dumps(answer, ensure_ascii=False, allow_nan=False).encode()
 
 
-def row(folder: str, run: int, part: int) -> dict[str, Any] | None:
-    """Return the row of a run by column, None if its part is not there yet."""
+def row(folder: str, run: int, part: int, parts: int = 0) -> dict[str, Any] | None:
+    """Return the row of a run by column, None if its part is not there yet. Raises ValueError if there are less than `parts`."""
     path = BatchFolder(Path(folder)).rows_of(part)
     if not path.exists():
+        _check_whole(folder, parts)
         return None
     with _told(path):
         table = pq.read_table(path, filters=[("run", "=", run)])
     return dict(zip(table.column_names, _listed(table)[0], strict=True))
 
 
-def export(folder: str, what: str, form: str, target: str) -> tuple[str, str]:
+def export(
+    folder: str, what: str, form: str, target: str, parts: int = 0, none: str = "there is nothing yet"
+) -> tuple[str, str]:
     """Return media type and path, in the folder `target`, of all rows or trajectories, in the order of runs.
 
-    Raises ValueError if there is nothing yet.
+    Raises ValueError: with `none` if there is nothing, and if there are less than `parts`.
     """
+    _check_whole(folder, parts)
     paths = _rows_in(folder) if what == "results" else BatchFolder(Path(folder)).trajectories()
     if not paths:
-        raise ValueError(f"there are no {what} yet; wait for the first part that has any")
+        raise ValueError(none)
     with tempfile.NamedTemporaryFile(dir=target, suffix=f".{form}", delete=False) as file:
         written = Path(file.name)
     try:
@@ -79,6 +88,15 @@ def export(folder: str, what: str, form: str, target: str) -> tuple[str, str]:
 def _rows_in(folder: str) -> list[Path]:
     batch = BatchFolder(Path(folder))
     return [batch.rows_of(number) for number in batch.parts()]
+
+
+def _check_whole(folder: str, parts: int) -> None:
+    """Raise ValueError if parts of a batch that is done are missing."""
+    if missing := sorted({*range(parts)}.difference(BatchFolder(Path(folder)).parts())):
+        few = ", ".join(str(number) for number in missing[:TOLD_PARTS])
+        more = f" and {len(missing) - TOLD_PARTS} more" if len(missing) > TOLD_PARTS else ""
+        what = f"of the {parts} parts of this batch's results {len(missing)} are missing ({few}{more})"
+        raise ValueError(f"{what}; resume the batch, and they are computed again")
 
 
 def _counts(batch: BatchFolder, number: int) -> dict[str, int] | None:

@@ -168,7 +168,7 @@ def test_the_same_key_is_the_same_batch_and_another_document_is_refused(tmp_path
         assert await bench.create("a key") == first
         with pytest.raises(Problem, match="expected a new key"):
             await bench.create("a key", seed=1)
-        assert [each.name for each in (bench.folder / "batches").iterdir()] == [first]
+        assert [each.name for each in (bench.folder / "batches").glob("20*")] == [first]
 
     with_bench(tmp_path, work)
 

@@ -19,7 +19,7 @@ def planned(*values: float) -> dict[str, object]:
 
 
 def test_what_is_left_out_or_ordered_otherwise_makes_no_other_batch() -> None:
-    first, second = read_batch(b'{"seed": 0, "name": "batch"}'), read_batch(b"  ")
+    first, second = read_batch(b'{"seed": 0, "name": "batch"}'), read_batch(b"{}")
     assert first == second
     assert isinstance(first, Asked)
     assert Batch.model_validate_json(first.document) == Batch()
@@ -29,6 +29,8 @@ def test_what_is_left_out_or_ordered_otherwise_makes_no_other_batch() -> None:
 @pytest.mark.parametrize(
     ("body", "status", "words"),
     [
+        (b"", 400, "The body is empty; expected the document of a batch"),
+        (b" \n", 400, "The body is empty; expected the document of a batch"),
         (b"{not json", 400, "The body is not JSON: "),
         (b"\xff\xfe", 400, "The body is not JSON: "),
         (b"[" * 100_000, 400, "The body is not JSON: "),

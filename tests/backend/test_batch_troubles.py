@@ -55,7 +55,7 @@ def test_a_batch_that_cannot_be_kept_leaves_no_folder(tmp_path: Path, monkeypatc
         with pytest.raises(Problem, match="cannot be written: No space left on device") as problem:
             await bench.create()
         assert problem.value.status == 507
-        assert [*(bench.folder / "batches").iterdir()] == []
+        assert [*(bench.folder / "batches").glob("20*")] == []
 
     with_bench(tmp_path, work)
 
@@ -75,6 +75,29 @@ def test_a_batch_that_the_database_cannot_forget_keeps_its_results(
             await bench.batches.delete(batch)
         assert bench.parts(batch) == list(range(10))
         assert await bench.state(batch) == "done"
+
+    with_bench(tmp_path, work)
+
+
+@pytest.mark.parametrize("fails", ["renamed", "delete"])
+def test_a_batch_whose_files_cannot_be_removed_is_not_said_to_be_deleted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: str
+) -> None:
+    def fail(*_: object) -> None:
+        raise OSError(30, "Read-only file system")
+
+    async def work(bench: Bench) -> None:
+        batch = await bench.create()
+        await bench.ended(batch)
+        with monkeypatch.context() as read_only:
+            read_only.setattr(BatchFolder, fails, fail)
+            with pytest.raises(Problem, match="cannot be removed: Read-only file system") as problem:
+                await bench.batches.delete(batch)
+        assert problem.value.status == 507
+        assert (await bench.state(batch), bench.parts(batch)) == ("done", list(range(10)))
+        assert bench.news[-1]["state"] == "done"
+        await bench.batches.delete(batch)
+        assert not (bench.folder / "batches" / batch).exists()
 
     with_bench(tmp_path, work)
 
@@ -104,7 +127,7 @@ def test_a_start_finishes_what_a_kill_has_left_half_made_or_half_deleted(
         assert bench.parts(kept[0]) == list(range(10))
 
     with_bench(tmp_path, after)
-    left = sorted(path.name for path in folder.iterdir())
+    left = sorted(path.name for path in folder.iterdir() if path.is_dir())
     assert left == sorted([*kept, names[2], f"{names[3]}.deleted", "mine"])
     assert f"{names[2]} holds results that no batch of the database names" in caplog.text
 

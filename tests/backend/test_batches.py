@@ -173,6 +173,19 @@ def test_what_makes_no_sense_is_refused_and_starts_nothing(session: httpx.Client
     assert session.get(BATCHES).json()["total"] == before
 
 
+@pytest.mark.parametrize("place", [BATCHES, f"{BATCHES}/estimate"])
+def test_an_empty_body_is_no_batch(session: httpx.Client, place: str) -> None:
+    before = session.get(BATCHES).json()["total"]
+    assert "The body is empty; expected" in problem_of(session.post(place, content=b""), 400)["detail"]
+    assert session.get(BATCHES).json()["total"] == before
+
+
+def test_samples_of_no_run_are_told_and_not_waited_for(http_batches: httpx.Client) -> None:
+    found = done(http_batches, batch(grid(INERTIA, 0.1, 0.2, 3), keep={"trajectories": "ended"}))
+    detail = problem_of(http_batches.get(f"{BATCHES}/{found['id']}/trajectories.parquet"), 422)["detail"]
+    assert detail == "No run of this batch ended early, so no samples were kept."
+
+
 def test_refused_runs_are_listed_with_their_reason(http_batches: httpx.Client) -> None:
     document = batch({"kind": "list", "path": INERTIA, "values": [0.1, -1.0, 0.2]})
     found = done(http_batches, document)
@@ -213,7 +226,9 @@ def test_trajectories_are_those_of_single_runs(http_batches: httpx.Client) -> No
         assert table[name].to_numpy()[17 * 40 : 18 * 40].tolist() == rows[:, names.index(name)].tolist()
 
 
-def test_a_damaged_part_is_named_and_resuming_computes_it_again(http_batches: httpx.Client, server: Server) -> None:
+def test_a_damaged_or_missing_part_is_named_and_resuming_computes_it_again(
+    http_batches: httpx.Client, server: Server
+) -> None:
     found = done(http_batches, batch(grid(INERTIA, 0.1, 0.2, 40)))
     place = f"{BATCHES}/{found['id']}"
     whole = http_batches.get(f"{place}/results").json()
@@ -222,6 +237,10 @@ def test_a_damaged_part_is_named_and_resuming_computes_it_again(http_batches: ht
     for wanted in ("results", "results.parquet", "runs/17"):
         detail = problem_of(http_batches.get(f"{place}/{wanted}"), 422)["detail"]
         assert "The file part-00001.parquet of this batch's results is damaged; resume the batch" in detail
+    part.unlink()
+    for wanted in ("results", "results.parquet", "runs/17"):
+        detail = problem_of(http_batches.get(f"{place}/{wanted}"), 422)["detail"]
+        assert "1 are missing (1); resume the batch" in detail
     assert http_batches.post(f"{place}/resume").json()["id"] == found["id"]
     assert ended(http_batches, found["id"])["state"] == "done"
     assert http_batches.get(f"{place}/results").json() == whole
