@@ -48,7 +48,7 @@ class Running:
 
     def document(self) -> dict[str, Any]:
         """Return it as REST gives it."""
-        return listed(self.so_far(), self.progress)
+        return listed(self.so_far(), self.progress, self._engine.waiting_for)
 
     def so_far(self) -> Row:
         """Return its row with what is known now."""
