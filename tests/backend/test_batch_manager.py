@@ -73,7 +73,9 @@ def test_a_batch_for_a_cluster_that_is_away_is_refused_with_what_to_do_and_start
     with_bench(tmp_path, work, engine)
 
 
-def test_a_lost_worker_costs_a_part_and_not_the_batch(tmp_path: Path) -> None:
+def test_a_lost_worker_costs_a_part_and_not_the_batch_and_is_logged(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     engine = FakeEngine()
     engine.goes_wrong = {2: [WorkerLost("killed")] * 5}
 
@@ -82,6 +84,7 @@ def test_a_lost_worker_costs_a_part_and_not_the_batch(tmp_path: Path) -> None:
 
     with_bench(tmp_path, work, engine)
     assert engine.asked == [0, 1, *[2] * 6, *range(3, 10), -1]
+    assert caplog.text.count("part 2 is given out again: killed") == 5
 
 
 def test_a_cluster_that_is_away_for_minutes_is_waited_for_with_pauses_that_grow(tmp_path: Path) -> None:
