@@ -34,7 +34,16 @@ class Admission:
     async def estimate(self, asked: Asked) -> Document:
         """Return what a batch would take. Raises Problem if it makes no sense or is too large."""
         self._limits.check_runs(asked.runs)
-        return estimate_of(await self._planned(asked))
+        plan = await self._planned(asked)
+        return estimate_of(plan) | {"limits": self._beyond(plan)}
+
+    def _beyond(self, plan: Document) -> list[str]:
+        """Return the sentences that a start would be refused with."""
+        try:
+            self._limits.check_bytes(plan["bytes"])
+        except Problem as beyond:
+            return [beyond.detail]
+        return []
 
     async def row(self, asked: Asked, key: str | None) -> Row:
         """Return a batch that may wait for its turn. Raises Problem if it may not."""

@@ -75,6 +75,8 @@ async def _run(document: str, beside: "BesideOutput", workers: int, address: str
         if address is not None:
             await engine.connect()
             workers = engine.threads
+            if waiting_for := engine.waiting_for:
+                typer.echo(f"vssea: waits for {waiting_for}", err=True)
         plan = plan_batch(document, workers)
         await asyncio.sleep(0)  # Ctrl+C meanwhile ends it before there is a folder
         if only_estimate:

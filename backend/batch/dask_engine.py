@@ -58,6 +58,13 @@ class DaskEngine:
         """How many parts may be given out now; one, which waits, while the cluster has no worker."""
         return max(1, AHEAD * self._threads)
 
+    @property
+    def waiting_for(self) -> str:
+        """What has to be there first: the scheduler and a worker."""
+        if self._client is None or self._client.status != "running":
+            return f"an answer of the scheduler at {self._address}"
+        return "" if self._threads else f"a worker: the cluster of {self._address} has none"
+
     async def connect(self) -> None:
         """Connect now, so that `threads` is known. Raises OutOfReach if no scheduler answers."""
         await self._connected()

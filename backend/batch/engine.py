@@ -67,6 +67,10 @@ class Engine(Protocol):
     def at_a_time(self) -> int:
         """How many parts may be given out now: at least `threads`."""
 
+    @property
+    def waiting_for(self) -> str:
+        """What has to be there before a part can be computed, in words; "" if nothing is missing."""
+
     async def connect(self) -> None:
         """Make `threads` known. Raises OutOfReach."""
 

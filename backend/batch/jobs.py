@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from backend.batch.asked import Asked
 from backend.batch.limits import runs_of
-from backend.batch.sizes import bytes_of, held_of, part_size, seconds_of
+from backend.batch.sizes import COLUMN_BYTES, bytes_of, held_of, part_size, seconds_of
 from backend.problem import Problem, from_validation, refused
 from vssea_core.batch.document import Batch
 from vssea_core.batch.numbers import NumbersOf
@@ -61,19 +61,21 @@ def plan_batch(document: str, workers: int) -> dict[str, Any]:
     if not samples:  # a run that is refused takes time and a row, too
         run_s, size = seconds_of(0, True, keep), bytes_of(len(columns), 0, keep)
     held = max((held_of(each, keep) for each in samples), default=0.0)
+    runs_a_part = part_size(plan.count, run_s, size, workers, held)
+    parts = -(-plan.count // runs_a_part)
     return {
         "runs": plan.count,
         "samples": round(plan.count * _mean(samples)),
         "in_lanes": _mean(in_lanes),
         "seconds": plan.count * run_s / workers,
-        "bytes": round(plan.count * size),
+        "bytes": round(plan.count * size + parts * COLUMN_BYTES * len(columns)),
         "paths": plan.paths,
         "columns": columns,
         "first": [plan.values(number) for number in range(min(FIRST, plan.count))],
         "refused": sentences,
         "warning": "" if samples else f"none of the {len(sentences)} runs looked at can start",
         "all_refused": not samples and len(sentences) == plan.count,
-        "part_size": part_size(plan.count, run_s, size, workers, held),
+        "part_size": runs_a_part,
     }
 
 

@@ -8,11 +8,12 @@ from backend.batch.progress import STATES, RunCounts
 STOPPED = {"cancelled": "was cancelled", "failed": "failed"}
 
 
-def listed(row: Row, progress: RunCounts | None = None) -> dict[str, Any]:
-    """Return the document of docs/protocol.md; `progress` is that of a batch that runs."""
+def listed(row: Row, progress: RunCounts | None = None, waiting_for: str = "") -> dict[str, Any]:
+    """Return the document of docs/protocol.md; `progress` and what it waits for are those of a batch that runs."""
     found = row.summary
     return {
         "id": row.id, "name": row.name, "description": found["description"], "state": row.state, "reason": row.reason,
+        "waiting_for": waiting_for,
         "created_at": row.created_at, "started_at": row.started_at, "ended_at": row.ended_at, "seconds": row.seconds,
         "engine": found["engine"], "runs": row.runs, "parts": row.parts, "part_size": row.part_size,
         "paths": found["paths"], "columns": found["columns"], "trajectories": found["trajectories"],

@@ -29,6 +29,12 @@ class LocalEngine:
         self._idle_s, self._end_limit_s = idle_s, end_limit_s
         self._idle: asyncio.Task[None] | None = None
 
+    @property
+    def waiting_for(self) -> str:
+        """What has to be there first: a worker with its machine code, which the first one of a version compiles."""
+        is_warm = any(self._warm.get(worker) == worker.process_id is not None for worker in self._all)
+        return "" if is_warm else "the workers to start and have their machine code"
+
     async def connect(self) -> None:
         """Do nothing: processes start with the first part."""
 

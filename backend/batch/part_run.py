@@ -1,12 +1,14 @@
 """The parts of one batch given out to an engine, each until it is computed and kept."""
 
 import asyncio
+import logging
 from collections import Counter, deque
 from collections.abc import Callable, Coroutine, Iterable
 from typing import Any
 
 from backend.batch.engine import Engine, OutOfReach, PartFailed, PartFiles, PartRefused, PartTask, WorkerLost
 
+logger = logging.getLogger(__name__)
 TRIES: dict[type[Exception], int] = {WorkerLost: 10, PartRefused: 1, OutOfReach: 20, PartFailed: 3}
 """A part that fails so often in one of these ways fails the batch: a cluster may be away for ten minutes."""
 PAUSED = PartFailed, OutOfReach
@@ -57,6 +59,8 @@ async def run_parts(engine: Engine, parts: Iterable[PartTask], keep: Keep, sleep
                     failures[part.number, kind] += 1
                     if failures[part.number, kind] >= TRIES[kind]:
                         raise PartFailed(_told(part, kind, failure)) from failure
+                    if kind is WorkerLost:
+                        logger.warning("part %d is given out again: %s", part.number, failure)
                     waiting.appendleft(part)
     finally:
         for task in under_way:

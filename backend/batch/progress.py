@@ -62,7 +62,9 @@ class RunCounts:
     def document(self) -> dict[str, Any]:
         """Return it as REST gives it."""
         rate, left = self.rate, self.runs - self.done
-        seconds_left = None if rate is None else max(0.0, left / rate - (self._clock() - self._latest_s))
+        seconds_left = None if rate is None else left / rate - (self._clock() - self._latest_s)
+        if seconds_left is not None and seconds_left <= 0.0:
+            seconds_left = None if left else 0.0  # nothing has come for longer than all was to take
         return {
             "progress": {
                 "done": self.done, "runs": self.runs, "parts_done": self.parts_done, "parts": self.parts,

@@ -136,6 +136,7 @@ class BatchQueue:
             self._limits,
             self._changed,
             self._times,
+            self._noted,
         )
         final: Row | None = None
         try:
@@ -159,6 +160,10 @@ class BatchQueue:
     def _changed(self) -> None:
         if self.running is not None:
             self._news.progress(self.running.row.id, self.running.progress.share)
+
+    def _noted(self, row: Row) -> None:
+        with suppress(Problem):  # it is noted again soon
+            self._catalogue.put(row)
 
     async def _put(self, row: Row) -> None:
         """Keep what becomes of a batch, as soon as the database can."""

@@ -5,7 +5,7 @@ import math
 import tempfile
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -77,7 +77,7 @@ def export(
         written = Path(file.name)
     try:
         with _told(paths[0]):
-            schema = pq.read_schema(paths[0])
+            schema = pq.read_schema(paths[0]).with_metadata(_origin(BatchFolder(Path(folder))))
         _write(form, schema, _tables(paths), str(written))
     except BaseException:
         written.unlink(missing_ok=True)
@@ -88,6 +88,15 @@ def export(
 def _rows_in(folder: str) -> list[Path]:
     batch = BatchFolder(Path(folder))
     return [batch.rows_of(number) for number in batch.parts()]
+
+
+def _origin(batch: BatchFolder) -> dict[str, str]:
+    """Return what a file says of itself: the batch's document, and the version of the model; what is gone is left out."""
+    document, division = None, batch.division()
+    with suppress(OSError):
+        document = batch.document()
+    told = {"vssea.batch": document, "vssea.version": None if division is None else division.version}
+    return {name: value for name, value in told.items() if value is not None}
 
 
 def _check_whole(folder: str, parts: int) -> None:

@@ -19,12 +19,14 @@ from backend.compute.pool import JobFailedError, JobRefusedError, Jobs
 
 logger = logging.getLogger(__name__)
 READ_LIMIT_S = 900.0
+NOTED_EVERY_S = 5.0
+"""What it has taken by then is kept so often, for the time after a kill."""
 UNEXPECTED = "an internal error; the server's log has the details"
 ANEW = "computed from its start: the parts that were kept are of another version of the model"
 
 
 class Running:
-    """Runs a batch once; `changed` is called after every part."""
+    """Runs a batch once; `changed` is called after every part, `note` in a thread now and then."""
 
     def __init__(
         self,
@@ -35,10 +37,11 @@ class Running:
         limits: Limits,
         changed: Callable[[], None],
         times: Times,
+        note: Callable[[Row], None] = lambda row: None,
     ) -> None:
         self.row, self._folder, self._engine, self._results = row, folder, engine, results
         self._limits, self._changed, self._clock, self._sleep = limits, changed, times.clock, times.sleep
-        self._begun_s = times.clock()
+        self._note, self._begun_s, self._noted_s = note, times.clock(), times.clock()
         self._size = 0
         self._work: asyncio.Task[None] | None = None
         self._is_cancelled = False
@@ -48,7 +51,7 @@ class Running:
 
     def document(self) -> dict[str, Any]:
         """Return it as REST gives it."""
-        return listed(self.so_far(), self.progress)
+        return listed(self.so_far(), self.progress, self._engine.waiting_for)
 
     def so_far(self) -> Row:
         """Return its row with what is known now."""
@@ -119,6 +122,9 @@ class Running:
         self._size += await asyncio.to_thread(self._folder.keep, part.number, files)
         self.progress.add(files.counts)
         self._changed()
+        if self._clock() - self._noted_s >= NOTED_EVERY_S:
+            self._noted_s = self._clock()
+            await asyncio.to_thread(self._note, self.so_far())
         self._limits.check_kept(self._size)
 
     def _counted(self, counts: dict[str, int], parts: int) -> RunCounts:

@@ -11,6 +11,8 @@ RUN_S = 1.3e-4
 PART_S = 1.5
 """A part takes about so long: little to lose, little to wait for, and little spent on giving it out."""
 PART_BYTES = 8_000_000
+COLUMN_BYTES = 310.0
+"""What a column of a part's file takes besides its values."""
 HELD_BYTES = 64_000_000
 """Samples that a worker holds while it computes a part take no more, even if every run ends early."""
 MOST_RUNS, STEP = 16_384, 16

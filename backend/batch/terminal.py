@@ -25,6 +25,6 @@ def words(runs: RunCounts) -> str:
     told = [f"{runs.done:,} of {runs.runs:,} runs"]
     told += [f"{runs.counts[state]:,} {state}" for state in ("ended", "refused") if runs.counts[state]]
     if runs.rate is not None:
-        left = timedelta(seconds=round(runs.document()["seconds_left"]))
-        told += [f"{runs.rate:,.0f} runs/s", f"{left} left"]
+        left = runs.document()["seconds_left"]
+        told += [f"{runs.rate:,.0f} runs/s", *([] if left is None else [f"{timedelta(seconds=round(left))} left"])]
     return ", ".join(told) if len(told) > 1 else f"{told[0]}, starting"

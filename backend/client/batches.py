@@ -17,6 +17,7 @@ from backend.client.problem import VsseaError
 
 Document = dict[str, Any]
 ENDED = ("done", "cancelled", "failed")
+AWAY_LIMIT_S = 60.0
 FORMS = (".parquet", ".csv", ".arrow")
 
 
@@ -55,23 +56,34 @@ class Batches:
         progress: Callable[[Document], object] | None = None,
         every_s: float = 0.5,
         limit_s: float | None = None,
+        clock: Callable[[], float] = time.monotonic,
+        sleep: Callable[[float], object] = time.sleep,
     ) -> Document:
         """Return a batch's document once it has ended, done or cancelled; `progress` is given each one until then.
 
-        Raises VsseaError with its reason if it failed, or if it goes on after `limit_s`.
+        A server that has answered once and then is away is asked again for AWAY_LIMIT_S. Raises VsseaError if it stays away,
+        with the batch's reason if it failed, or if it goes on after `limit_s`.
         """
-        until = None if limit_s is None else time.monotonic() + limit_s
+        until = None if limit_s is None else clock() + limit_s
+        answered_s: float | None = None
         while True:
-            found = self.get(batch)
-            if progress is not None:
-                progress(found)
-            if found["state"] == "failed":
-                raise VsseaError(f"batch {batch} failed: {found.get('reason') or 'no reason is known'}")
-            if found["state"] in ENDED:
-                return found
-            if until is not None and time.monotonic() >= until:
-                raise VsseaError(f"batch {batch} is still {found['state']} after {limit_s:g} s; wait for it again")
-            time.sleep(every_s)
+            found = None
+            try:
+                found, answered_s = self.get(batch), clock()
+            except VsseaError as error:  # with a status the server has answered
+                if error.status is not None or answered_s is None or clock() - answered_s >= AWAY_LIMIT_S:
+                    raise
+            if found is not None:
+                if progress is not None:
+                    progress(found)
+                if found["state"] == "failed":
+                    raise VsseaError(f"batch {batch} failed: {found.get('reason') or 'no reason is known'}")
+                if found["state"] in ENDED:
+                    return found
+            if until is not None and clock() >= until:
+                state = "not answered for" if found is None else f"still {found['state']}"
+                raise VsseaError(f"batch {batch} is {state} after {limit_s:g} s; wait for it again")
+            sleep(every_s)
 
     def cancel(self, batch: str) -> Document:
         """End a batch; the parts that are done stay."""

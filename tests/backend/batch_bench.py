@@ -23,7 +23,7 @@ RUNS, PART_SIZE = 100, 10
 class FakeEngine:
     """Computes a part when the test says so, or at once; remembers which were asked for and which were ended."""
 
-    name = "an engine"
+    name, waiting_for = "an engine", ""
 
     def __init__(self, workers: int = 1) -> None:
         self.threads, self.at_a_time = 1, workers

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from backend.batch.limits import Limits
+from backend.batch.running import NOTED_EVERY_S
 from backend.batch.version import model_version
 from backend.problem import Problem
 from tests.backend.batch_bench import PART_SIZE, RUNS, Bench, FakeEngine, until, with_bench
@@ -184,3 +185,20 @@ def test_without_its_document_a_batch_fails_with_a_reason(tmp_path: Path) -> Non
         assert (found["state"], "cannot be read" in found["reason"]) == ("failed", True)
 
     with_bench(tmp_path, go_on)
+
+
+def test_seconds_of_a_batch_outlast_a_kill_but_for_the_last_few(tmp_path: Path) -> None:
+    engine = FakeEngine()
+    engine.held = {0, 1, 2}
+
+    async def work(bench: Bench) -> None:
+        batch = await bench.create()
+        for part in range(2):
+            await until(lambda part=part: engine.asked[-1:] == [part])
+            bench.time_s += NOTED_EVERY_S - 1.0
+            engine.held.remove(part)
+        await until(lambda: engine.asked[-1:] == [2])
+        kept = await bench.batches.row(batch)  # what a kill leaves
+        assert (kept.state, kept.seconds, kept.summary["parts_done"]) == ("running", 2 * (NOTED_EVERY_S - 1.0), 2)
+
+    with_bench(tmp_path, work, engine)

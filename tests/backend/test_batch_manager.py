@@ -73,7 +73,9 @@ def test_a_batch_for_a_cluster_that_is_away_is_refused_with_what_to_do_and_start
     with_bench(tmp_path, work, engine)
 
 
-def test_a_lost_worker_costs_a_part_and_not_the_batch(tmp_path: Path) -> None:
+def test_a_lost_worker_costs_a_part_and_not_the_batch_and_is_logged(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     engine = FakeEngine()
     engine.goes_wrong = {2: [WorkerLost("killed")] * 5}
 
@@ -82,6 +84,7 @@ def test_a_lost_worker_costs_a_part_and_not_the_batch(tmp_path: Path) -> None:
 
     with_bench(tmp_path, work, engine)
     assert engine.asked == [0, 1, *[2] * 6, *range(3, 10), -1]
+    assert caplog.text.count("part 2 is given out again: killed") == 5
 
 
 def test_a_cluster_that_is_away_for_minutes_is_waited_for_with_pauses_that_grow(tmp_path: Path) -> None:
@@ -241,3 +244,49 @@ def test_the_rate_leaves_out_the_start_of_the_workers_and_tells_the_time_left() 
     assert (told["rate"], told["seconds_left"]) == (10.0, 3.0)
     assert told["counts"] == {"done": 58, "ended": 2, "refused": 0}
     assert told["progress"] == {"done": 60, "runs": 100, "parts_done": 6, "parts": 10, "share": 0.6}
+
+
+def test_when_nothing_comes_for_longer_than_all_was_to_take_the_time_left_is_not_known() -> None:
+    time_s = 0.0
+    progress = RunCounts(RUNS, 10, {}, 0, lambda: time_s)
+    for now in (10.0, 11.0):
+        time_s = now
+        progress.add({"done": 10})
+    time_s = 18.9
+    assert progress.document()["seconds_left"] == pytest.approx(0.1)
+    time_s = 19.0
+    assert (progress.document()["seconds_left"], progress.rate) == (None, 10.0)
+    for _ in range(8):
+        progress.add({"done": 10})
+    assert progress.document()["seconds_left"] == 0.0
+
+
+def test_a_batch_that_runs_says_what_its_engine_waits_for(tmp_path: Path) -> None:
+    engine = FakeEngine()
+    engine.held = {0}
+
+    async def work(bench: Bench) -> None:
+        batch = await bench.create()
+        await until(lambda: engine.asked == [0])
+        engine.waiting_for = "a worker"
+        assert (await bench.batches.document(batch))["waiting_for"] == "a worker"
+        engine.held.clear()
+        assert (await bench.ended(batch))["waiting_for"] == ""
+
+    with_bench(tmp_path, work, engine)
+
+
+def test_the_estimate_tells_what_a_start_would_be_refused_with(tmp_path: Path) -> None:
+    async def work(bench: Bench) -> None:
+        (sentence,) = (await bench.batches.estimate(document()))["limits"]
+        with pytest.raises(Problem) as problem:
+            await bench.create()
+        assert problem.value.detail == sentence
+        assert "VSSEA_BATCH_MOST_GB" in sentence
+
+    with_bench(tmp_path, work, limits=Limits(RUNS, 399.0, 2))
+
+    async def within(bench: Bench) -> None:
+        assert (await bench.batches.estimate(document()))["limits"] == []
+
+    with_bench(tmp_path, within, limits=Limits(RUNS, 400.0, 2))

@@ -3,11 +3,14 @@
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.ipc
+import pyarrow.parquet as pq
 import pytest
 
 from backend.batch.catalogue import FACTS, Row
 from backend.batch.engine import PartFiles
-from backend.batch.folder import BatchFolder
+from backend.batch.folder import BatchFolder, Division
 from backend.batch.listed import whole_parts, why_none
 from backend.batch.part_files import parquet
 from backend.batch.result_jobs import export, page, row
@@ -64,3 +67,19 @@ def test_why_there_is_nothing_is_told_by_what_became_of_the_batch(
     none = why_none(row_of(state, trajectories), what)
     with pytest.raises(ValueError, match=words):
         export(str(tmp_path), what, "parquet", str(tmp_path), 0, none)
+
+
+@pytest.mark.parametrize("what", ["results", "trajectories"])
+def test_a_file_says_which_batch_and_version_it_is_of(tmp_path: Path, what: str) -> None:
+    batch = BatchFolder(tmp_path / "batch")
+    batch.create('{"name": "mine"}', Division(4, "a version"))
+    table = parquet({"run": np.arange(4), "state": ["done"] * 4})
+    batch.keep(0, PartFiles(table, table, {}))
+    for form, read in (("parquet", pq.read_table), ("arrow", lambda path: pa.ipc.open_stream(path).read_all())):
+        found = read(export(str(batch.path), what, form, str(tmp_path))[1])
+        assert found.schema.metadata == {b"vssea.batch": b'{"name": "mine"}', b"vssea.version": b"a version"}
+        assert found["run"].to_pylist() == [0, 1, 2, 3]
+    batch.document_path.unlink()
+    assert pq.read_schema(export(str(batch.path), what, "parquet", str(tmp_path))[1]).metadata == {
+        b"vssea.version": b"a version"
+    }

@@ -99,9 +99,10 @@ async def test_once_connected_it_knows_its_threads_before_the_first_part(cluster
     engine = DaskEngine(cluster.scheduler_address)
     try:
         assert (engine.threads, engine.at_a_time) == (1, 1)
+        assert engine.waiting_for == f"an answer of the scheduler at {cluster.scheduler_address}"
         async with asyncio.timeout(LIMIT_S):
             await engine.connect()
-        assert (engine.threads, engine.at_a_time) == (2, 4)
+        assert (engine.threads, engine.at_a_time, engine.waiting_for) == (2, 4, "")
     finally:
         await engine.end()
 
