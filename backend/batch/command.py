@@ -5,6 +5,7 @@ import json
 import os
 import sys
 import time
+from codecs import BOM_UTF8
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -141,17 +142,20 @@ def _document(file: str) -> tuple[str, bool]:
     from backend.problem import Problem, from_validation
     from vssea_core.batch.document import Batch
 
+    named = "standard input" if file == "-" else file
     try:
-        text = sys.stdin.read() if file == "-" else Path(file).read_text("utf-8")
-        batch = Batch.model_validate_json(text)
+        content = sys.stdin.buffer.read() if file == "-" else Path(file).read_bytes()
+        batch = Batch.model_validate_json(content.removeprefix(BOM_UTF8))
         _limits().check_runs(runs_of(batch))
         return batch.model_dump_json(), batch.keep.trajectories != "none"
     except Problem as refusal:
         refuse(refusal.detail)
     except ValidationError as error:
+        if (first := error.errors(include_url=False)[0])["type"] == "json_invalid":
+            refuse(f"{named} is not JSON: {first['ctx']['error']}; expected a batch document (docs/batches.md)")
         refuse(from_validation(error, Batch).detail)
-    except (OSError, UnicodeDecodeError) as error:
-        refuse(f"{file} cannot be read: {error}; expected the file of a batch as JSON")
+    except OSError as error:
+        refuse(f"{named} cannot be read: {error}; expected the file of a batch as JSON")
 
 
 def _limits() -> "Limits":

@@ -350,6 +350,12 @@ def test_a_place_where_nothing_can_be_written_is_told_before_anything_is_compute
     assert sorted(path.name for path in file.parent.iterdir()) == ["batch.json", "dir.parquet"]
 
 
+def test_a_file_may_begin_with_a_byte_order_mark(here: Here, file: Path) -> None:
+    file.write_bytes(b"\xef\xbb\xbf" + file.read_bytes())
+    assert vssea(file, "-o", file.with_name("out.parquet")).exit_code == 0
+    assert pq.read_table(file.with_name("out.parquet")).to_pydict() == expected()
+
+
 def test_an_estimate_is_told_and_nothing_is_written(here: Here, file: Path) -> None:
     outcome = vssea(file, "--estimate", "-o", file.with_name("out.parquet"))
     assert outcome.exit_code == 0, outcome.stderr
@@ -367,13 +373,18 @@ HEAVY = json.dumps({"vary": [{"kind": "list", "path": "timing.sample_time_s", "v
     ("arguments", "stdin", "words"),
     [
         (["nothing.json"], "", "nothing.json cannot be read"),
-        (["-"], "{", "not JSON"),
+        (["-"], "{", "standard input is not JSON: EOF while parsing an object"),
         (["-"], '{"varied": []}', "unknown name"),
+        (
+            ["no"],
+            "",
+            "vssea: no is not JSON: expected ident at line 1 column 2; expected a batch document (docs/batches.md)",
+        ),
         (["-"], '{"vary": [{"kind": "grid", "path": "seed", "low": 0}]}', "vary.0.high is missing"),
         (
             ["-"],
             '{"vary": [{"kind": "grid", "path": "tuning.observer.bandwith", "low": 1, "high": 2}]}',
-            "vary: tuning.observer.bandwith is no field of the scenario; nearest: tuning.observer.bandwidth",
+            "vssea: tuning.observer.bandwith is no field of the scenario; nearest: tuning.observer.bandwidth",
         ),
         (["-"], HEAVY, "no run of this batch can start; Run 0: "),
         (["-", "-o", "out.xlsx"], "{}", "expected a name ending in .parquet, .csv, .arrow"),
@@ -387,7 +398,7 @@ def test_what_is_wrong_is_told_in_one_sentence(
     here: Here, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], stdin: str, words: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "no").write_text("a file instead of a folder")
+    (tmp_path / "no").write_text("no batch")
     outcome = vssea(*arguments, stdin=stdin)
     assert outcome.exit_code == 2
     assert outcome.stdout == ""

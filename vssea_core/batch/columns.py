@@ -21,12 +21,14 @@ def drawn_column(draw: Draw, unit: Numbers, factor_of: float, whole: bool) -> Co
     try:
         values = drawn_whole(draw.distribution, unit, int(factor_of))
     except ValueError as none:
-        raise ValueError(f"vary: {draw.path} takes whole numbers, and {none}; widen its distribution") from None
+        raise ValueError(f"{draw.path} takes whole numbers, and {none}; widen its distribution") from None
     return _as_whole(_finite(draw.path, values))
 
 
 def grid_column(grid: Grid, factor_of: float, whole: bool) -> Column:
     """Return the values of a grid, times `factor_of`. Raises ValueError."""
+    if grid.spacing == "log" and not (grid.low > 0.0 and grid.high > 0.0):
+        raise ValueError(f"{grid.path} goes from {grid.low:g} to {grid.high:g}; a log grid needs positive ends")
     values = _finite(grid.path, factor_of * _spaced(grid, grid.count))
     if not whole:
         return values
@@ -35,7 +37,7 @@ def grid_column(grid: Grid, factor_of: float, whole: bool) -> Column:
         fits = different
     if fits < grid.count:
         raise ValueError(
-            f"vary: {grid.path} takes whole numbers, and {grid.count} values from {values[0]:g} to {values[-1]:g} "
+            f"{grid.path} takes whole numbers, and {grid.count} values from {values[0]:g} to {values[-1]:g} "
             f"repeat some of them; a count of {fits} does not"
         )
     return _as_whole(np.rint(values))
@@ -76,7 +78,7 @@ def _spaced(grid: Grid, count: int) -> Numbers:
 
 def _finite(path: str, values: Numbers) -> Numbers:
     if not np.isfinite(values).all():
-        raise ValueError(f"vary: {path} gets values beyond the largest number there is; expected smaller ones")
+        raise ValueError(f"{path} gets values beyond the largest number there is; expected smaller ones")
     return values
 
 
