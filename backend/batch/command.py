@@ -46,7 +46,7 @@ def batch(
     from backend.batch.engine import PartFailed
 
     output = output or Path(f"{'batch' if file == '-' else Path(file).stem}.parquet")
-    if output.suffix not in FORMS:
+    if output.suffix.lower() not in FORMS:
         refuse(f"{output} cannot be written: expected a name ending in {', '.join(FORMS)}")
     if dask is not None and workers is not None:
         refuse("--workers is of this machine and --dask of a cluster; expected one of them")

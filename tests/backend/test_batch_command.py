@@ -22,7 +22,7 @@ from backend.batch.dask_engine import DaskEngine
 from backend.batch.engine import PartFailed, PartFiles, PartTask
 from backend.batch.part_files import part_files
 from backend.batch.progress import RunCounts
-from backend.batch.terminal import words
+from backend.batch.terminal import Lines, words
 from backend.cli import app
 from tests.backend.server import free_port
 from vssea_core.actuator.parameters import Sensors
@@ -350,10 +350,10 @@ def test_a_place_where_nothing_can_be_written_is_told_before_anything_is_compute
     assert sorted(path.name for path in file.parent.iterdir()) == ["batch.json", "dir.parquet"]
 
 
-def test_a_file_may_begin_with_a_byte_order_mark(here: Here, file: Path) -> None:
+def test_a_file_may_begin_with_a_byte_order_mark_and_a_name_end_in_capitals(here: Here, file: Path) -> None:
     file.write_bytes(b"\xef\xbb\xbf" + file.read_bytes())
-    assert vssea(file, "-o", file.with_name("out.parquet")).exit_code == 0
-    assert pq.read_table(file.with_name("out.parquet")).to_pydict() == expected()
+    assert vssea(file, "-o", file.with_name("out.PARQUET")).exit_code == 0
+    assert pq.read_table(file.with_name("out.PARQUET")).to_pydict() == expected()
 
 
 def test_an_estimate_is_told_and_nothing_is_written(here: Here, file: Path) -> None:
@@ -440,3 +440,28 @@ def test_the_bar_says_how_fast_it_is_and_how_long_it_will_take() -> None:
     assert words(progress) == "0 of 10,000 runs, starting"
     progress.add({"done": 1990, "ended": 8, "refused": 2})
     assert words(progress) == "2,000 of 10,000 runs, 8 ended, 2 refused, 500 runs/s, 0:00:16 left"
+
+
+def test_without_a_terminal_there_is_a_line_every_ten_seconds_and_at_every_tenth() -> None:
+    now = [0.0]
+    progress, lines = RunCounts(10_000, 200, {}, 0, lambda: now[0]), list[str]()
+    shows = Lines(progress, lines.append, lambda: now[0])
+    told = []
+    for seconds, runs in (
+        (9.0, 400),
+        (1.0, 100),
+        (1.0, 499),
+        (1.0, 1),
+        (9.0, 900),
+        (0.1, 99),
+        (0.1, 4001),
+        (0.5, 3000),
+        (0.5, 1000),
+    ):
+        now[0] += seconds
+        progress.add({"done": runs})
+        shows.show()
+        told.append(len(lines))
+    assert told == [0, 1, 1, 2, 2, 2, 3, 3, 4]
+    assert lines[0] == "5 %, 500 of 10,000 runs, 100 runs/s, 0:01:35 left"
+    assert lines[-1].startswith("100 %, 10,000 of 10,000 runs")

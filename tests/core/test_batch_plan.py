@@ -135,6 +135,17 @@ def test_a_factor_of_a_whole_part_is_told_in_short() -> None:
     assert len(str(refused.value)) < 130
 
 
+@pytest.mark.parametrize(
+    ("values", "kept"),
+    [((True, False), [True, False]), ((1, 2), [1, 2]), ((1, 2.5), [1.0, 2.5]), ((True, 1), ["true", "1"])],
+)
+def test_a_column_of_results_is_what_all_its_values_are(values: tuple[Any, ...], kept: list[Any]) -> None:
+    part = run_part(plan(listed("tuning.observer.predict", *values), scenario={"duration_s": 0.02}), 0, 2)
+    found = [*table_of(part)["tuning.observer.predict"]]
+    assert [getattr(value, "item", lambda value=value: value)() for value in found] == kept
+    assert len({type(value) for value in found}) == 1
+
+
 def test_zipped_fields_need_equally_many_values() -> None:
     with pytest.raises(ValueError, match=r"there are actuator.link.inertia 2, tuning.observer.bandwidth 3"):
         plan({"kind": "zip", "members": [listed(INERTIA, 0.1, 0.2), grid(BANDWIDTH, 60.0, 100.0, 3)]})

@@ -61,9 +61,11 @@ def item(column: Column, place: int) -> Any:
 
 
 def type_of(column: Column) -> type:
-    """Return what a column of results holds: int if all are whole and fit into 64 bits, float, or str for anything else."""
+    """Return what a column of results holds: bool, int if all are whole and fit into 64 bits, float, or str for the rest."""
     if isinstance(column, np.ndarray):
         return int if column.dtype == np.int64 else float
+    if all(isinstance(value, bool) for value in column):
+        return bool
     if any(isinstance(value, bool) or not isinstance(value, int | float) for value in column):
         return str
     if all(isinstance(value, int) and INT64.min <= value <= INT64.max for value in column):

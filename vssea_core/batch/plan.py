@@ -38,7 +38,7 @@ class BatchPlan:
         self.count = math.prod(self._lengths)
         self.paths = tuple(path for columns in self._columns for path, _ in columns)
         self.types = {path: type_of(column) for columns in self._columns for path, column in columns}
-        """What a column of values is: whole numbers, numbers, or text (with JSON for what is neither)."""
+        """What a column of values is: truth values, whole numbers, numbers, or text (with JSON for what is neither)."""
         _check_apart(
             [(path, place) for variation, at in _placed(batch.vary) for path, place in _paths_in(variation, at)]
         )
