@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from pydantic import ValidationError
 
+from backend.batch.ending import Ended, run_until_ended
 from backend.refusal import refuse
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def batch(
 ) -> None:
     """Run a batch of scenarios here and write a row for each run; docs/batches.md says what a batch is.
 
-    Ctrl+C ends it and keeps what is done: the same command goes on from there.
+    Ctrl+C or SIGTERM ends it and keeps what is done: the same command goes on from there.
     """
     from backend.batch.beside_output import FORMS, BesideOutput, OutputExists
     from backend.batch.engine import PartFailed
@@ -55,7 +56,10 @@ def batch(
     try:
         if not estimate:
             beside.check()
-        asyncio.run(_run(document, beside, workers or os.cpu_count() or 1, dask, estimate))
+        run_until_ended(_run(document, beside, workers or os.cpu_count() or 1, dask, estimate))
+    except Ended as end:
+        typer.echo(f"vssea: ended{_goes_on(output)}", err=True)
+        raise typer.Exit(end.status) from None
     except KeyboardInterrupt:
         typer.echo(f"vssea: ended{_goes_on(output)}", err=True)
         raise typer.Exit(ENDED_BY_USER) from None

@@ -80,9 +80,10 @@ def here(monkeypatch: pytest.MonkeyPatch) -> Here:
 @pytest.fixture(autouse=True)
 def interruptible() -> Iterator[None]:
     """SIGINT raises KeyboardInterrupt, also where the tests run in the background of a shell, which ignores it there."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    before = [signal.signal(signal.SIGINT, signal.default_int_handler), signal.getsignal(signal.SIGTERM)]
     yield
-    signal.signal(signal.SIGINT, before)
+    for number, handler in zip((signal.SIGINT, signal.SIGTERM), before, strict=True):
+        signal.signal(number, handler)
 
 
 @pytest.fixture
@@ -141,6 +142,35 @@ def test_ctrl_c_keeps_what_is_done_and_the_same_command_goes_on(here: Here, file
     assert here.computed == [0, 1, 2]
     assert pq.read_table(output).to_pydict() == expected()
     assert not output.with_name("out.parquet.parts").exists()
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, 143), (signal.SIGINT, 130)], ids=["term", "int"])
+def test_the_first_signal_ends_it_and_those_after_it_change_nothing(
+    here: Here, file: Path, monkeypatch: pytest.MonkeyPatch, number: signal.Signals, status: int
+) -> None:
+    output = file.with_name("out.parquet")
+    here.before = lambda part: signal.raise_signal(number) if part == 1 else None
+
+    async def end() -> None:
+        for late in (signal.SIGINT, signal.SIGTERM, signal.SIGINT):
+            signal.raise_signal(late)
+            await asyncio.sleep(0)
+        here.ended = True
+
+    monkeypatch.setattr(here, "end", end)
+    outcome = vssea(file, "-o", output)
+    signal.raise_signal(signal.SIGINT)  # as late as the last line of the program
+    assert (outcome.exit_code, here.ended) == (status, True)
+    assert outcome.stderr == (
+        f"vssea: ended; what is done is kept in {output}.parts, and the same command goes on from there\n"
+    )
+
+
+def test_signals_are_handled_as_before_once_a_batch_is_whole(here: Here, file: Path) -> None:
+    before = signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)
+    assert vssea(file, "-o", file.with_name("out.parquet")).exit_code == 0
+    assert vssea(file, "-o", file.with_name("out.parquet")).exit_code == 2
+    assert (signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)) == before
 
 
 def test_a_part_that_keeps_failing_is_told_and_what_is_done_is_kept(here: Here, file: Path) -> None:
