@@ -17,6 +17,7 @@ LARGEST_DOCUMENT = 4_000_000
 EXPORT_LIMIT_S = 900.0
 SIMULATION_LIMIT_S = 60.0
 MOST_ROWS = 20_000
+REFUSED = 422
 Document = dict[str, Any]
 State = Literal["queued", "running", "done", "cancelled", "failed"]
 
@@ -37,7 +38,11 @@ def batch_routes(batches: Batches, pool: Pool, folder: str) -> APIRouter:
         key: Annotated[str | None, Header(alias="Idempotency-Key", max_length=200)] = None,
     ) -> Document:
         """Start a batch, or return the one that was started with the same Idempotency-Key."""
-        row, is_new = await batches.create(await content_of(request, LARGEST_DOCUMENT), key)
+        try:
+            row, is_new = await batches.create(await content_of(request, LARGEST_DOCUMENT), key)
+        except Problem as problem:
+            problem.detail += " No batch was started." if problem.status == REFUSED else ""
+            raise
         response.status_code = 201 if is_new else 200
         response.headers["Location"] = f"/api/batches/{row.id}"
         return await batches.document(row.id)

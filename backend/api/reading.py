@@ -23,10 +23,10 @@ async def read(job: Awaitable[Answer], what: str = "recording") -> Answer:
     try:
         return await job
     except JobRefusedError as refusal:
-        sentence = str(refusal)
+        sentence = str(refusal).rstrip(".")
         raise refused(f"{sentence[:1].upper()}{sentence[1:]}.") from refusal
     except JobFailedError as failure:
-        raise Problem(503, "Not read", f"The {what} could not be read: {failure}.") from failure
+        raise Problem(503, "Not read", f"The {what} could not be read: {str(failure).rstrip('.')}.") from failure
 
 
 def named_file(path: str, media_type: str, name: str | None = None, **headers: str) -> FileResponse:

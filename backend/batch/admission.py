@@ -26,9 +26,7 @@ class Admission:
 
     async def read(self, body: bytes) -> Asked:
         """Return the batch in the body of a request. Raises Problem if there is none."""
-        found: Asked | Problem = await self._answer("read_batch", body)
-        if isinstance(found, Problem):
-            raise found
+        found: Asked = await self._answer("read_batch", body)
         return found
 
     async def estimate(self, asked: Asked) -> Document:
@@ -66,20 +64,23 @@ class Admission:
             await self._engine.connect()
         except OutOfReach as away:
             raise _not_planned(away) from away
-        plan: Document = await self._answer("plan_batch", asked.document, self._engine.threads)
+        plan: Document = await self._answer("plan_asked", asked.document, self._engine.threads)
         return plan
 
     async def _answer(self, job: str, *arguments: Any) -> Any:
         try:
-            return await self._plans.run(job, *arguments, time_limit_s=PLAN_LIMIT_S)
+            answer = await self._plans.run(job, *arguments, time_limit_s=PLAN_LIMIT_S)
         except JobRefusedError as refusal:
             raise _refused(str(refusal)) from refusal
         except JobFailedError as failure:
             raise _not_planned(failure) from failure
+        if isinstance(answer, Problem):
+            raise answer
+        return answer
 
 
 def _not_planned(failure: Exception) -> Problem:
-    return Problem(503, "Not planned", f"The batch could not be planned: {failure}.")
+    return Problem(503, "Not planned", f"The batch could not be planned: {str(failure).rstrip('.')}.")
 
 
 def _refused(sentence: str) -> Problem:

@@ -99,7 +99,7 @@ class BesideOutput:
         """
         targets = {"results": self.output} | ({"trajectories": self.trajectories} if self.folder.trajectories() else {})
         written = {
-            target: Path(export(str(self.path), what, FORMS[target.suffix], str(self.path))[1])
+            target: Path(export(str(self.path), what, FORMS[target.suffix.lower()], str(self.path))[1])
             for what, target in targets.items()
         }
         self.check()

@@ -5,12 +5,14 @@ import json
 import os
 import sys
 import time
+from codecs import BOM_UTF8
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from pydantic import ValidationError
 
+from backend.batch.ending import Ended, run_until_ended
 from backend.refusal import refuse
 
 if TYPE_CHECKING:
@@ -39,13 +41,13 @@ def batch(
 ) -> None:
     """Run a batch of scenarios here and write a row for each run; docs/batches.md says what a batch is.
 
-    Ctrl+C ends it and keeps what is done: the same command goes on from there.
+    Ctrl+C or SIGTERM ends it and keeps what is done: the same command goes on from there.
     """
     from backend.batch.beside_output import FORMS, BesideOutput, OutputExists
     from backend.batch.engine import PartFailed
 
     output = output or Path(f"{'batch' if file == '-' else Path(file).stem}.parquet")
-    if output.suffix not in FORMS:
+    if output.suffix.lower() not in FORMS:
         refuse(f"{output} cannot be written: expected a name ending in {', '.join(FORMS)}")
     if dask is not None and workers is not None:
         refuse("--workers is of this machine and --dask of a cluster; expected one of them")
@@ -54,7 +56,10 @@ def batch(
     try:
         if not estimate:
             beside.check()
-        asyncio.run(_run(document, beside, workers or os.cpu_count() or 1, dask, estimate))
+        run_until_ended(_run(document, beside, workers or os.cpu_count() or 1, dask, estimate))
+    except Ended as end:
+        typer.echo(f"vssea: ended{_goes_on(output)}", err=True)
+        raise typer.Exit(end.status) from None
     except KeyboardInterrupt:
         typer.echo(f"vssea: ended{_goes_on(output)}", err=True)
         raise typer.Exit(ENDED_BY_USER) from None
@@ -143,17 +148,20 @@ def _document(file: str) -> tuple[str, bool]:
     from backend.problem import Problem, from_validation
     from vssea_core.batch.document import Batch
 
+    named = "standard input" if file == "-" else file
     try:
-        text = sys.stdin.read() if file == "-" else Path(file).read_text("utf-8")
-        batch = Batch.model_validate_json(text)
+        content = sys.stdin.buffer.read() if file == "-" else Path(file).read_bytes()
+        batch = Batch.model_validate_json(content.removeprefix(BOM_UTF8))
         _limits().check_runs(runs_of(batch))
         return batch.model_dump_json(), batch.keep.trajectories != "none"
     except Problem as refusal:
         refuse(refusal.detail)
     except ValidationError as error:
+        if (first := error.errors(include_url=False)[0])["type"] == "json_invalid":
+            refuse(f"{named} is not JSON: {first['ctx']['error']}; expected a batch document (docs/batches.md)")
         refuse(from_validation(error, Batch).detail)
-    except (OSError, UnicodeDecodeError) as error:
-        refuse(f"{file} cannot be read: {error}; expected the file of a batch as JSON")
+    except OSError as error:
+        refuse(f"{named} cannot be read: {error}; expected the file of a batch as JSON")
 
 
 def _limits() -> "Limits":

@@ -16,6 +16,7 @@ from vssea_core.batch.document import Batch
 from vssea_core.batch.numbers import NumbersOf
 from vssea_core.batch.part import columns_of
 from vssea_core.batch.plan import BatchPlan
+from vssea_core.batch.refusals import VaryError
 from vssea_core.field_errors import FieldError
 from vssea_core.scenario import Scenario
 
@@ -35,12 +36,20 @@ def read_batch(body: bytes) -> Asked | Problem:
     except ValidationError as error:
         if (first := error.errors(include_url=False)[0])["type"] == "json_invalid":
             return Problem(400, "Not JSON", f"The body is not JSON: {first['ctx']['error']}.")
-        problem = from_validation(error, Batch, consequence="No batch was started.")
+        problem = from_validation(error, Batch)
         errors = problem.document()["errors"][:TOLD_ERRORS]
         return refused(problem.detail, *(FieldError(**each) for each in errors))
     document = batch.model_dump_json()
     digest = hashlib.sha256(document.encode()).hexdigest()
     return Asked(document, digest, batch.name, batch.description, batch.keep.trajectories, runs_of(batch))
+
+
+def plan_asked(document: str, workers: int) -> dict[str, Any] | Problem:
+    """Return the plan of a batch, or the problem of the field that makes no sense."""
+    try:
+        return plan_batch(document, workers)
+    except VaryError as refusal:
+        return refused(f"{refusal}.", FieldError(refusal.field, None, str(refusal)))
 
 
 def plan_batch(document: str, workers: int) -> dict[str, Any]:

@@ -108,12 +108,12 @@ class Batches:
     def save(self, batch: str, file: Path | str) -> Path:
         """Write the results into a file, its form told by its name (.parquet, .csv, .arrow), and return its path."""
         target = Path(file)
-        if target.suffix not in FORMS:
+        if target.suffix.lower() not in FORMS:
             raise VsseaError(f"{target} cannot be written: expected a name ending in {', '.join(FORMS)}")
         unfinished = target.with_name(f"{target.name}.new")
         try:
             with unfinished.open("wb") as written:
-                self._download(f"{_of(batch)}/results{target.suffix}", written)
+                self._download(f"{_of(batch)}/results{target.suffix.lower()}", written)
             unfinished.replace(target)
         except OSError as error:
             raise VsseaError(f"{target} cannot be written: {error}") from error

@@ -13,7 +13,7 @@ def document_of(given: Any) -> dict[str, Any]:
         given = given.model_dump(mode="json")
     if isinstance(given, Path):
         try:
-            given = given.read_text("utf-8")
+            given = given.read_text("utf-8-sig")
         except (OSError, UnicodeDecodeError) as error:
             raise VsseaError(f"{given} cannot be read: {error}") from error
     if isinstance(given, str):

@@ -22,7 +22,7 @@ from backend.batch.dask_engine import DaskEngine
 from backend.batch.engine import PartFailed, PartFiles, PartTask
 from backend.batch.part_files import part_files
 from backend.batch.progress import RunCounts
-from backend.batch.terminal import words
+from backend.batch.terminal import Lines, words
 from backend.cli import app
 from tests.backend.server import free_port
 from vssea_core.actuator.parameters import Sensors
@@ -80,9 +80,10 @@ def here(monkeypatch: pytest.MonkeyPatch) -> Here:
 @pytest.fixture(autouse=True)
 def interruptible() -> Iterator[None]:
     """SIGINT raises KeyboardInterrupt, also where the tests run in the background of a shell, which ignores it there."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    before = [signal.signal(signal.SIGINT, signal.default_int_handler), signal.getsignal(signal.SIGTERM)]
     yield
-    signal.signal(signal.SIGINT, before)
+    for number, handler in zip((signal.SIGINT, signal.SIGTERM), before, strict=True):
+        signal.signal(number, handler)
 
 
 @pytest.fixture
@@ -141,6 +142,35 @@ def test_ctrl_c_keeps_what_is_done_and_the_same_command_goes_on(here: Here, file
     assert here.computed == [0, 1, 2]
     assert pq.read_table(output).to_pydict() == expected()
     assert not output.with_name("out.parquet.parts").exists()
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, 143), (signal.SIGINT, 130)], ids=["term", "int"])
+def test_the_first_signal_ends_it_and_those_after_it_change_nothing(
+    here: Here, file: Path, monkeypatch: pytest.MonkeyPatch, number: signal.Signals, status: int
+) -> None:
+    output = file.with_name("out.parquet")
+    here.before = lambda part: signal.raise_signal(number) if part == 1 else None
+
+    async def end() -> None:
+        for late in (signal.SIGINT, signal.SIGTERM, signal.SIGINT):
+            signal.raise_signal(late)
+            await asyncio.sleep(0)
+        here.ended = True
+
+    monkeypatch.setattr(here, "end", end)
+    outcome = vssea(file, "-o", output)
+    signal.raise_signal(signal.SIGINT)  # as late as the last line of the program
+    assert (outcome.exit_code, here.ended) == (status, True)
+    assert outcome.stderr == (
+        f"vssea: ended; what is done is kept in {output}.parts, and the same command goes on from there\n"
+    )
+
+
+def test_signals_are_handled_as_before_once_a_batch_is_whole(here: Here, file: Path) -> None:
+    before = signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)
+    assert vssea(file, "-o", file.with_name("out.parquet")).exit_code == 0
+    assert vssea(file, "-o", file.with_name("out.parquet")).exit_code == 2
+    assert (signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)) == before
 
 
 def test_a_part_that_keeps_failing_is_told_and_what_is_done_is_kept(here: Here, file: Path) -> None:
@@ -350,6 +380,12 @@ def test_a_place_where_nothing_can_be_written_is_told_before_anything_is_compute
     assert sorted(path.name for path in file.parent.iterdir()) == ["batch.json", "dir.parquet"]
 
 
+def test_a_file_may_begin_with_a_byte_order_mark_and_a_name_end_in_capitals(here: Here, file: Path) -> None:
+    file.write_bytes(b"\xef\xbb\xbf" + file.read_bytes())
+    assert vssea(file, "-o", file.with_name("out.PARQUET")).exit_code == 0
+    assert pq.read_table(file.with_name("out.PARQUET")).to_pydict() == expected()
+
+
 def test_an_estimate_is_told_and_nothing_is_written(here: Here, file: Path) -> None:
     outcome = vssea(file, "--estimate", "-o", file.with_name("out.parquet"))
     assert outcome.exit_code == 0, outcome.stderr
@@ -367,13 +403,18 @@ HEAVY = json.dumps({"vary": [{"kind": "list", "path": "timing.sample_time_s", "v
     ("arguments", "stdin", "words"),
     [
         (["nothing.json"], "", "nothing.json cannot be read"),
-        (["-"], "{", "not JSON"),
+        (["-"], "{", "standard input is not JSON: EOF while parsing an object"),
         (["-"], '{"varied": []}', "unknown name"),
+        (
+            ["no"],
+            "",
+            "vssea: no is not JSON: expected ident at line 1 column 2; expected a batch document (docs/batches.md)",
+        ),
         (["-"], '{"vary": [{"kind": "grid", "path": "seed", "low": 0}]}', "vary.0.high is missing"),
         (
             ["-"],
             '{"vary": [{"kind": "grid", "path": "tuning.observer.bandwith", "low": 1, "high": 2}]}',
-            "vary: tuning.observer.bandwith is no field of the scenario; nearest: tuning.observer.bandwidth",
+            "vssea: tuning.observer.bandwith is no field of the scenario; nearest: tuning.observer.bandwidth",
         ),
         (["-"], HEAVY, "no run of this batch can start; Run 0: "),
         (["-", "-o", "out.xlsx"], "{}", "expected a name ending in .parquet, .csv, .arrow"),
@@ -387,7 +428,7 @@ def test_what_is_wrong_is_told_in_one_sentence(
     here: Here, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], stdin: str, words: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "no").write_text("a file instead of a folder")
+    (tmp_path / "no").write_text("no batch")
     outcome = vssea(*arguments, stdin=stdin)
     assert outcome.exit_code == 2
     assert outcome.stdout == ""
@@ -429,3 +470,28 @@ def test_the_bar_says_how_fast_it_is_and_how_long_it_will_take() -> None:
     assert words(progress) == "0 of 10,000 runs, starting"
     progress.add({"done": 1990, "ended": 8, "refused": 2})
     assert words(progress) == "2,000 of 10,000 runs, 8 ended, 2 refused, 500 runs/s, 0:00:16 left"
+
+
+def test_without_a_terminal_there_is_a_line_every_ten_seconds_and_at_every_tenth() -> None:
+    now = [0.0]
+    progress, lines = RunCounts(10_000, 200, {}, 0, lambda: now[0]), list[str]()
+    shows = Lines(progress, lines.append, lambda: now[0])
+    told = []
+    for seconds, runs in (
+        (9.0, 400),
+        (1.0, 100),
+        (1.0, 499),
+        (1.0, 1),
+        (9.0, 900),
+        (0.1, 99),
+        (0.1, 4001),
+        (0.5, 3000),
+        (0.5, 1000),
+    ):
+        now[0] += seconds
+        progress.add({"done": runs})
+        shows.show()
+        told.append(len(lines))
+    assert told == [0, 1, 1, 2, 2, 2, 3, 3, 4]
+    assert lines[0] == "5 %, 500 of 10,000 runs, 100 runs/s, 0:01:35 left"
+    assert lines[-1].startswith("100 %, 10,000 of 10,000 runs")

@@ -169,7 +169,9 @@ def test_an_estimate_says_what_it_will_take_and_starts_nothing(session: httpx.Cl
 )
 def test_what_makes_no_sense_is_refused_and_starts_nothing(session: httpx.Client, document: Any, words: str) -> None:
     before = session.get(BATCHES).json()["total"]
-    assert words in problem_of(session.post(BATCHES, json=document), 422)["detail"]
+    detail = problem_of(session.post(BATCHES, json=document), 422)["detail"]
+    assert words in detail
+    assert detail.endswith(". No batch was started.")
     assert session.get(BATCHES).json()["total"] == before
 
 
@@ -184,6 +186,14 @@ def test_samples_of_no_run_are_told_and_not_waited_for(http_batches: httpx.Clien
     found = done(http_batches, batch(grid(INERTIA, 0.1, 0.2, 3), keep={"trajectories": "ended"}))
     detail = problem_of(http_batches.get(f"{BATCHES}/{found['id']}/trajectories.parquet"), 422)["detail"]
     assert detail == "No run of this batch ended early, so no samples were kept."
+
+
+def test_an_estimate_is_refused_with_the_field_of_the_document(session: httpx.Client) -> None:
+    asked = batch(grid(INERTIA, 0.1, 1.0, 3), grid("actuator.lnk.inertia", 0.1, 1.0, 3))
+    problem = problem_of(session.post(f"{BATCHES}/estimate", json=asked), 422)
+    assert problem["detail"].startswith("actuator.lnk.inertia is no field of the scenario; nearest: ")
+    assert "started" not in problem["detail"]
+    assert [error["field"] for error in problem["errors"]] == ["vary.1.path"]
 
 
 def test_refused_runs_are_listed_with_their_reason(http_batches: httpx.Client) -> None:

@@ -61,7 +61,7 @@ def test_a_batch_is_created_from_a_model_a_dict_or_text(fake: FakeServer, client
 
 def test_a_batch_is_created_from_a_file(fake: FakeServer, client: VsseaClient, tmp_path: Path) -> None:
     fake.on("POST /api/batches", Answer(BATCH, 201))
-    (tmp_path / "batch.json").write_text('{"name": "from a file"}', "utf-8")
+    (tmp_path / "batch.json").write_text('{"name": "from a file"}', "utf-8-sig")
     client.batches.create(tmp_path / "batch.json")
     assert fake.asked[0].body == {"name": "from a file"}
     assert "Idempotency-Key" not in fake.asked[0].headers
@@ -252,6 +252,8 @@ def test_results_are_saved_under_their_name_once_they_are_whole(
         client.batches.save("b1", tmp_path / "out.csv")
     assert [file.name for file in tmp_path.iterdir()] == ["out.csv"]
     assert (tmp_path / "out.csv").read_bytes() == b"run\n0\n"
+    fake.on("GET /api/batches/b1/results.csv", Answer(b"run\n0\n", media_type="text/csv"))
+    assert client.batches.save("b1", tmp_path / "OUT.CSV").name == "OUT.CSV"
     with pytest.raises(VsseaError, match=r"expected a name ending in .parquet, .csv, .arrow"):
         client.batches.save("b1", tmp_path / "out.xlsx")
 

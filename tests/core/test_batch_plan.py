@@ -13,6 +13,7 @@ from scipy import stats
 from vssea_core.batch.document import Batch
 from vssea_core.batch.part import Part, run_part
 from vssea_core.batch.plan import BatchPlan
+from vssea_core.batch.refusals import VaryError
 from vssea_core.channels import CHANNELS
 from vssea_core.scenarios import NOMINAL
 
@@ -35,9 +36,6 @@ def sample(count: int, method: str = "random", **draws: dict[str, Any]) -> dict[
     paths = {"inertia": INERTIA, "bandwidth": BANDWIDTH, "amplitude": "reference.amplitude"}
     drawn = [{"path": paths[name], "distribution": distribution} for name, distribution in draws.items()]
     return {"kind": "sample", "count": count, "method": method, "draws": drawn}
-
-
-UNIFORM = {"kind": "uniform", "low": 50.0, "high": 150.0}
 
 
 def test_variations_are_crossed_and_the_last_one_changes_fastest() -> None:
@@ -108,6 +106,44 @@ def test_each_run_may_have_noise_of_its_own() -> None:
 def test_what_makes_no_sense_is_refused_in_a_sentence(vary: list[dict[str, Any]], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         plan(*vary)
+
+
+UNIFORM = {"kind": "uniform", "low": 50.0, "high": 150.0}
+ODD = listed("actuator.lnk", 1.0)
+
+
+@pytest.mark.parametrize(
+    ("vary", "field"),
+    [
+        ([listed("seed", 1), ODD], "vary.1.path"),
+        ([{"kind": "zip", "members": [listed("seed", 1), ODD]}], "vary.0.members.1.path"),
+        ([{"kind": "sample", "draws": [{"path": "actuator.lnk", "distribution": UNIFORM}]}], "vary.0.draws.0.path"),
+        ([listed(INERTIA, 0.1), listed("seed", 1), grid(INERTIA, 0.1, 0.2, 2)], "vary.2.path"),
+    ],
+)  # fmt: skip
+def test_a_refusal_names_the_field_of_the_document_and_begins_with_the_varied_one(
+    vary: list[dict[str, Any]], field: str
+) -> None:
+    with pytest.raises(VaryError, match=r"^actuator\.l") as refused:
+        plan(*vary)
+    assert refused.value.field == field
+
+
+def test_a_factor_of_a_whole_part_is_told_in_short() -> None:
+    with pytest.raises(VaryError, match=r'^tuning is {".+\.\.\.; a factor needs a number there') as refused:
+        plan(listed("tuning", 2.0, factor=True))
+    assert len(str(refused.value)) < 130
+
+
+@pytest.mark.parametrize(
+    ("values", "kept"),
+    [((True, False), [True, False]), ((1, 2), [1, 2]), ((1, 2.5), [1.0, 2.5]), ((True, 1), ["true", "1"])],
+)
+def test_a_column_of_results_is_what_all_its_values_are(values: tuple[Any, ...], kept: list[Any]) -> None:
+    part = run_part(plan(listed("tuning.observer.predict", *values), scenario={"duration_s": 0.02}), 0, 2)
+    found = [*table_of(part)["tuning.observer.predict"]]
+    assert [getattr(value, "item", lambda value=value: value)() for value in found] == kept
+    assert len({type(value) for value in found}) == 1
 
 
 def test_zipped_fields_need_equally_many_values() -> None:

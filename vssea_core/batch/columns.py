@@ -21,12 +21,14 @@ def drawn_column(draw: Draw, unit: Numbers, factor_of: float, whole: bool) -> Co
     try:
         values = drawn_whole(draw.distribution, unit, int(factor_of))
     except ValueError as none:
-        raise ValueError(f"vary: {draw.path} takes whole numbers, and {none}; widen its distribution") from None
+        raise ValueError(f"{draw.path} takes whole numbers, and {none}; widen its distribution") from None
     return _as_whole(_finite(draw.path, values))
 
 
 def grid_column(grid: Grid, factor_of: float, whole: bool) -> Column:
     """Return the values of a grid, times `factor_of`. Raises ValueError."""
+    if grid.spacing == "log" and not (grid.low > 0.0 and grid.high > 0.0):
+        raise ValueError(f"{grid.path} goes from {grid.low:g} to {grid.high:g}; a log grid needs positive ends")
     values = _finite(grid.path, factor_of * _spaced(grid, grid.count))
     if not whole:
         return values
@@ -35,7 +37,7 @@ def grid_column(grid: Grid, factor_of: float, whole: bool) -> Column:
         fits = different
     if fits < grid.count:
         raise ValueError(
-            f"vary: {grid.path} takes whole numbers, and {grid.count} values from {values[0]:g} to {values[-1]:g} "
+            f"{grid.path} takes whole numbers, and {grid.count} values from {values[0]:g} to {values[-1]:g} "
             f"repeat some of them; a count of {fits} does not"
         )
     return _as_whole(np.rint(values))
@@ -59,9 +61,11 @@ def item(column: Column, place: int) -> Any:
 
 
 def type_of(column: Column) -> type:
-    """Return what a column of results holds: int if all are whole and fit into 64 bits, float, or str for anything else."""
+    """Return what a column of results holds: bool, int if all are whole and fit into 64 bits, float, or str for the rest."""
     if isinstance(column, np.ndarray):
         return int if column.dtype == np.int64 else float
+    if all(isinstance(value, bool) for value in column):
+        return bool
     if any(isinstance(value, bool) or not isinstance(value, int | float) for value in column):
         return str
     if all(isinstance(value, int) and INT64.min <= value <= INT64.max for value in column):
@@ -76,7 +80,7 @@ def _spaced(grid: Grid, count: int) -> Numbers:
 
 def _finite(path: str, values: Numbers) -> Numbers:
     if not np.isfinite(values).all():
-        raise ValueError(f"vary: {path} gets values beyond the largest number there is; expected smaller ones")
+        raise ValueError(f"{path} gets values beyond the largest number there is; expected smaller ones")
     return values
 
 

@@ -40,7 +40,7 @@ class Listed(Part):
     def _are_finite(cls, values: tuple[JsonValue, ...], info: ValidationInfo) -> tuple[JsonValue, ...]:
         for place, value in enumerate(values):
             if not _is_finite(value):
-                raise ValueError(f"vary: value {place} of {info.data.get('path')} is {value}; expected finite numbers")
+                raise ValueError(f"value {place} of {info.data.get('path')} is {value}; expected finite numbers")
         return values
 
 
@@ -84,9 +84,9 @@ class Draw(Part):
         if not isinstance(self.distribution, Normal):
             low, high = self.distribution.low, self.distribution.high
             if low > high:
-                raise ValueError(f"vary: {self.path} is drawn from {low:g} to {high:g}; expected the lower end first")
+                raise ValueError(f"{self.path} is drawn from {low:g} to {high:g}; expected the lower end first")
             if not math.isfinite(high - low):
-                raise ValueError(f"vary: {self.path} is drawn from {low:g} to {high:g}; expected ends closer together")
+                raise ValueError(f"{self.path} is drawn from {low:g} to {high:g}; expected ends closer together")
         return self
 
 

@@ -5,21 +5,25 @@ import difflib
 import itertools
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from vssea_core.batch.columns import Column, drawn_column, grid_column, item, listed_column, type_of
 from vssea_core.batch.document import Batch, Draw, Grid, Listed, Sample, Variation, Zipped, count_of
 from vssea_core.batch.draws import unit_cube
+from vssea_core.batch.refusals import VaryError, refused_at
 from vssea_core.batch.runs import Runs, Values
 from vssea_core.changes import UnknownPath, paths_of, set_value, value_at
 from vssea_core.scenario import Scenario
 
+Item = TypeVar("Item")
 NEIGHBOURS = 3
+LONGEST = 60
+"""Characters that are shown of a value."""
 
 
 class BatchPlan:
@@ -34,10 +38,12 @@ class BatchPlan:
         self.count = math.prod(self._lengths)
         self.paths = tuple(path for columns in self._columns for path, _ in columns)
         self.types = {path: type_of(column) for columns in self._columns for path, column in columns}
-        """What a column of values is: whole numbers, numbers, or text (with JSON for what is neither)."""
-        _check_apart(self.paths)
+        """What a column of values is: truth values, whole numbers, numbers, or text (with JSON for what is neither)."""
+        _check_apart(
+            [(path, place) for variation, at in _placed(batch.vary) for path, place in _paths_in(variation, at)]
+        )
         if batch.noise == "own" and "seed" in self.paths:
-            raise ValueError("vary: seed is varied, and noise own gives each run a seed too; expected one of them")
+            raise VaryError("noise", "seed is varied, and noise own gives each run a seed too; expected one of them")
 
     def values(self, index: int) -> Values:
         """Return the values by path of run `index` (from 0). Raises IndexError."""
@@ -69,22 +75,26 @@ class BatchPlan:
     def _runs(self) -> Runs:
         return Runs(self.batch.scenario)
 
-    def _columns_of(self, variation: Variation, place: int) -> Iterator[tuple[str, Column]]:
+    def _columns_of(self, variation: Variation, number: int, at: str = "") -> Iterator[tuple[str, Column]]:
+        at = at or f"vary.{number}"
         match variation:
             case Zipped():
-                for member in variation.members:
-                    yield from self._columns_of(member, place)
+                for member, place in _placed(variation.members, f"{at}.members"):
+                    yield from self._columns_of(member, number, place)
             case Sample():
-                cube = unit_cube(variation, self.batch.seed, place)
-                for draw, unit in zip(variation.draws, cube.T, strict=True):
-                    yield draw.path, drawn_column(draw, unit, *self._base_of(draw))
+                cube = unit_cube(variation, self.batch.seed, number)
+                for (draw, place), unit in zip(_placed(variation.draws, f"{at}.draws"), cube.T, strict=True):
+                    with refused_at(place):
+                        column = drawn_column(draw, unit, *self._base_of(draw))
+                    yield draw.path, column
             case Grid():
-                if variation.spacing == "log" and not (variation.low > 0.0 and variation.high > 0.0):
-                    ends = f"{variation.low:g} to {variation.high:g}"
-                    raise ValueError(f"vary: {variation.path} goes from {ends}; a log grid needs positive ends")
-                yield variation.path, grid_column(variation, *self._base_of(variation))
+                with refused_at(at):
+                    column = grid_column(variation, *self._base_of(variation))
+                yield variation.path, column
             case Listed():
-                yield variation.path, listed_column(variation, *self._base_of(variation))
+                with refused_at(at):
+                    column = listed_column(variation, *self._base_of(variation))
+                yield variation.path, column
 
     def _base_of(self, varied: Grid | Listed | Draw) -> tuple[float, bool]:
         """Return what values are factors of (1 if they are none), and whether the field has a whole number. Raises ValueError."""
@@ -94,9 +104,9 @@ class BatchPlan:
             return 1, whole
         factors = varied.values if isinstance(varied, Listed) else ()
         if not all(isinstance(x, int | float) and not isinstance(x, bool) for x in (base, *factors)):
-            raise ValueError(
-                f"vary: {varied.path} is {json.dumps(base)}; a factor needs a number there, and has to be one"
-            )
+            told = json.dumps(base)
+            told = told if len(told) <= LONGEST else f"{told[: LONGEST - 3]}..."
+            raise ValueError(f"{varied.path} is {told}; a factor needs a number there, and has to be one")
         return base, whole
 
     def _present(self, path: str) -> Any:
@@ -109,7 +119,7 @@ class BatchPlan:
                 return None
             near = difflib.get_close_matches(path, known, NEIGHBOURS, cutoff=0.4)
             told = f"; nearest: {', '.join(near)}" if near else ""
-            raise ValueError(f"vary: {path} is no field of the scenario{told}") from None
+            raise ValueError(f"{path} is no field of the scenario{told}") from None
 
     def _kinds(self) -> Iterator[dict[str, Any]]:
         """Yield the base's document, and what it is with each kind that is varied."""
@@ -124,13 +134,31 @@ class BatchPlan:
                         yield document
 
 
-def _check_apart(paths: Sequence[str]) -> None:
-    """Raise ValueError for a field that is varied twice, by itself or within a part that is varied too."""
-    for (outer_names, outer), (names, path) in itertools.pairwise(sorted((_names(path), path) for path in paths)):
-        if outer_names == names:
-            raise ValueError(f"vary: {path} is varied twice; expected each field once")
-        if names[: len(outer_names)] == outer_names:
-            raise ValueError(f"vary: {path} is varied, and so is all of {outer}; expected one of them")
+def _placed(items: Sequence[Item], at: str = "vary") -> Iterator[tuple[Item, str]]:
+    """Yield items of a list of the batch document, each with its place in it."""
+    yield from ((item, f"{at}.{number}") for number, item in enumerate(items))
+
+
+def _paths_in(variation: Variation, at: str) -> Iterator[tuple[str, str]]:
+    """Yield the paths that a variation varies, each with the place of what varies it."""
+    match variation:
+        case Zipped():
+            yield from ((member.path, place) for member, place in _placed(variation.members, f"{at}.members"))
+        case Sample():
+            yield from ((draw.path, place) for draw, place in _placed(variation.draws, f"{at}.draws"))
+        case _:
+            yield variation.path, at
+
+
+def _check_apart(varied: Iterable[tuple[str, str]]) -> None:
+    """Raise VaryError for a field that is varied twice, by itself or within a part that is varied too."""
+    in_order = sorted((_names(path), path, place) for path, place in varied)
+    for (outer_names, outer, _), (names, path, place) in itertools.pairwise(in_order):
+        with refused_at(place):
+            if outer_names == names:
+                raise ValueError(f"{path} is varied twice; expected each field once")
+            if names[: len(outer_names)] == outer_names:
+                raise ValueError(f"{path} is varied, and so is all of {outer}; expected one of them")
 
 
 def _names(path: str) -> tuple[str, ...]:
