@@ -7,6 +7,7 @@ done with one has the next in hand. `distributed`, the extra vssea[dask], is imp
 
 import asyncio
 import importlib.util
+import logging
 import re
 from typing import Any
 from uuid import uuid4
@@ -123,6 +124,8 @@ class DaskEngine:
     async def _connected(self) -> Any:
         from distributed import Client
 
+        # What it logs of a scheduler that is away are tracebacks; WorkerLost and OutOfReach say it in a sentence.
+        logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         async with self._connecting:
             if self._client is None or self._client.status != "running":
                 await self.end()
