@@ -39,9 +39,14 @@ class Course:
             self._kept_for, self._kept = kept_for, np.empty((1, count, self._size))
             self._fill(*self._different[0], 0, count, period_s, self._kept[0])
 
+    @property
+    def is_kept(self) -> bool:
+        """Whether there is one for all runs, which is computed already."""
+        return len(self._different) == 1
+
     def pages(self, first: int, count: int, period_s: float) -> Numbers:
         """Return the courses (m, count, size) of `count` samples from `first` on."""
-        if len(self._different) == 1:
+        if self.is_kept:
             return self._kept[:, first : first + count]
         shape = len(self._different), count, self._size
         if self._room.shape != shape:
@@ -59,6 +64,11 @@ class CourseBook:
         self.commands = Course(at.LINK_LOADS - at.COMMAND, fill_commands)
         self.loads = Course(at.STEPS - at.LINK_LOADS, fill_loads)
         self.link_terms = self.motor_terms = np.empty((0, 0, 0))
+
+    @property
+    def are_kept(self) -> bool:
+        """Whether all runs have all of them in common."""
+        return self.targets.is_kept and self.commands.is_kept and self.loads.is_kept
 
     def open(self, runs: Sequence[RunNumbers], predicts: bool) -> None:
         """Open it for up to LANES `runs` of one kind."""

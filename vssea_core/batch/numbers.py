@@ -33,7 +33,7 @@ from vssea_core.simulation.state import (
 
 Result = TypeVar("Result")
 Numbers = NDArray[np.float64]
-KEPT = 4096
+KEPT = 1024
 """Of what is made of a part, so many are kept for the runs that share the part."""
 SLEW_TO = Slew._fields.index("theta_to")
 _OBSERVER_AT, _PREDICT_AT, _SWITCH_AT = (

@@ -15,8 +15,8 @@ from vssea_core.channels import CHANNELS
 from vssea_core.simulation.kernel import RUNNING, run
 
 Numbers = NDArray[np.float64]
-BLOCK = 500
-"""Samples whose courses are computed ahead: few enough to stay in the processor's cache."""
+BLOCK, LONG_BLOCK = 500, 5000
+"""Samples that are passed at once: few enough for courses of all lanes to stay in the processor's cache, more for one course."""
 
 
 def run_side_by_side(
@@ -37,8 +37,9 @@ def run_side_by_side(
     tunings = np.array([each.prepared for each in runs] + [first.prepared] * (LANES - len(runs)))
     courses.open(runs, variant.predicts)
     kernel, block = lanes_kernel(variant), lanes.ravel()
-    for begin in range(1, count, BLOCK):
-        samples = min(BLOCK, count - begin)
+    longest = LONG_BLOCK if courses.are_kept else BLOCK
+    for begin in range(1, count, longest):
+        samples = min(longest, count - begin)
         pages = (
             courses.targets.pages(begin, samples, period), courses.targets.which,
             courses.commands.pages(begin, samples, period), courses.commands.which,

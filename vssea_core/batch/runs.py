@@ -11,7 +11,7 @@ from vssea_core.field_errors import field_errors, sentence_of
 from vssea_core.scenario import Scenario, check_fits
 
 Values = dict[str, Any]
-KEPT = 4096
+KEPT = 1024
 """Parts that are kept for the runs that share them."""
 _CONFIG = ConfigDict(extra="forbid", allow_inf_nan=False)
 _PART_MODELS: dict[str, type[BaseModel]] = {
