@@ -4,6 +4,7 @@ import asyncio
 import hashlib
 import os
 import signal
+import statistics
 import time
 from typing import Any
 
@@ -14,14 +15,15 @@ from backend.batch.part_run import parts_of, run_parts
 from benchmarks.batch import PART, plants
 from vssea_core.scenarios import NOMINAL, REALISTIC
 
-RUNS = 10_000
+RUNS, WARM_UP = 40_000, 2_048
 WORKERS = 2
+TURNS = 3
 
 
-async def computed(engine: Engine, document: str, killed: Any = None) -> tuple[str, float]:
+async def computed(engine: Engine, document: str, runs: int = RUNS, killed: Any = None) -> tuple[str, float]:
     """Return a digest over all parts in order, and the seconds it took; `killed` is called once a third is done."""
     digests: dict[int, bytes] = {}
-    parts = parts_of(document, RUNS, PART)
+    parts = parts_of(document, runs, PART)
 
     async def keep(part: PartTask, files: PartFiles) -> None:
         digests[part.number] = hashlib.sha256(files.rows + files.trajectories).digest()
@@ -51,13 +53,14 @@ async def compare() -> None:
                 os.kill(next(iter(workers.values())).pid, signal.SIGKILL)
 
             try:
-                await computed(local, document)  # kernels are compiled, or loaded
-                await computed(dask, document)
-                here, here_s = await computed(local, document)
-                there, there_s = await computed(dask, document)
+                for engine in (local, dask):
+                    await computed(engine, document, WARM_UP)  # kernels are compiled, or loaded
+                turns = [(await computed(local, document), await computed(dask, document)) for _ in range(TURNS)]
+                here, there = turns[0][0][0], turns[0][1][0]
+                here_s, there_s = (statistics.median(turn[engine][1] for turn in turns) for engine in (0, 1))
                 print(f"{scenario.name}, {RUNS} runs: here {here_s:.2f} s ({here}), Dask {there_s:.2f} s ({there}), "
                       f"ratio {there_s / here_s:.3f}, bits {'equal' if here == there else 'DIFFER'}", flush=True)  # fmt: skip
-                broken, broken_s = await computed(dask, document, kill)
+                broken, broken_s = await computed(dask, document, killed=kill)
                 print(f"  one of {WORKERS} workers killed after a third: {broken_s:.2f} s ({broken}), "
                       f"bits {'equal' if broken == here else 'DIFFER'}", flush=True)  # fmt: skip
             finally:
