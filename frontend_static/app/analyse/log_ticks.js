@@ -23,11 +23,14 @@ export function logTicks(low, high) {
 export function tickText(value) {
   const size = Math.abs(value);
   if (size !== 0 && (size < 1e-3 || size >= 1e5)) {
-    const power = Math.floor(Math.log10(size) + 1e-9);
-    const mantissa = Math.round(value / 10 ** power);
-    return `${mantissa === 1 ? "" : `${mantissa}·`}10${raised(power)}`;
+    const [mantissa, power] = value.toExponential(4).split("e").map(Number);
+    return `${mantissa === 1 ? "" : `${signed(mantissa)}·`}10${raised(power)}`;
   }
-  return String(Number(value.toPrecision(3))).replace("-", "−");
+  return signed(Number(value.toPrecision(6)));
+}
+
+function signed(number) {
+  return String(number).replace("-", "−");
 }
 
 /** @returns {string} a magnitude, with its power of ten where it is very small or large */
