@@ -38,9 +38,9 @@ export class BatchHead {
     setText(this.state, stateWords(batch));
     this.state.dataset.state = batch.state;
     setText(this.counts, `${runsWords(batch.runs)}: ${countsWords(batch.counts)}.`);
-    setText(this.reason, sentence(batch.reason));
+    setText(this.reason, sentence(batch.reason || (batch.waiting_for && `waits for ${batch.waiting_for}`)));
     this.reason.dataset.state = batch.state;
-    this.reason.hidden = !batch.reason;
+    this.reason.hidden = this.reason.textContent === "";
     this.#offer(isResumable(batch));
     showProgress(this.progress, batch);
     for (const { form, link } of this.results) link.href = batchAddress(batch.id, `results.${form}`);

@@ -6,7 +6,7 @@ import { countWords, sentence, spanWords } from "./words.js";
 const PATIENCE_MS = 400;
 const REFUSED_SHOWN = 3;
 
-/** What the batch that is being defined would take, as the server says: runs, time, size, which would be refused, and its warning. */
+/** What the batch that is being defined would take, as the server says: runs, time, size, which would be refused, and why. */
 export class Estimate {
   #asked = 0;
   #timer = null;
@@ -59,7 +59,7 @@ export class Estimate {
     setText(this.runs, told ? countWords(told.runs) : "–");
     setText(this.time, told ? spanWords(told.seconds) : "–");
     setText(this.size, told ? sizeWords(told.bytes) : "–");
-    setText(this.problem, problem || sentence(told?.warning) || refusedWords(told?.refused ?? []));
+    setText(this.problem, problem || told?.limits?.[0] || sentence(told?.warning) || refusedWords(told?.refused ?? []));
     this.problem.hidden = this.problem.textContent === "";
     this.figures.hidden = problem !== "";
     const few = (told?.refused ?? []).slice(0, REFUSED_SHOWN);
