@@ -95,6 +95,8 @@ def _tolerant(found: Found, base: BaseModel) -> tuple[BaseModel | None, list[Fie
     mended, standing = copy.deepcopy(raw), base.model_dump(mode="json")
     for error in own.refused:
         *parents, last = error.field.split(".")[1:] or [""]
+        if last == "kind" and error.value is not None and parents:
+            last = parents.pop()  # what goes with a kind that nobody knows goes with it
         here: Any = mended
         for parent in parents:
             here = here.get(parent) if isinstance(here, dict) else None

@@ -105,7 +105,7 @@ def test_every_field_of_a_hand_written_file_that_does_not_fit_is_named(presets: 
             "a number from 1 to 2000 rad/s",
         ),
         ({"observer": {"bandwidth": 10.0}}, "tuning.observer.kind", "missing"),
-        ({"observer": {"kind": "magic"}}, "tuning.observer", "'velocity'"),
+        ({"observer": {"kind": "magic"}}, "tuning.observer.kind", "'velocity'"),
         ({"model": 5}, "tuning.model", "object"),
         ({"schedule": {"poles_exponent": "0.5"}}, "tuning.schedule.poles_exponent", "from -1 to 1"),
     ],

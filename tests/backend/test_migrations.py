@@ -75,7 +75,7 @@ def test_what_no_longer_fits_is_moved_as_it_was_and_named(old: Path) -> None:
     found = Documents(database, PRESET).get("odd")
     assert found.raw["tuning"] == json.loads(ODD)
     assert found.fit.unknown == ["tuning.gain"]
-    assert [error.field for error in found.fit.refused] == ["tuning.controller"]
+    assert [error.field for error in found.fit.refused] == ["tuning.controller.kind"]
     database.close()
 
 
