@@ -9,7 +9,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 
 .DELETE_ON_ERROR:
-.PHONY: help run test tests-in-a-browser other-tests tests-in-real-time lint lock bench clean environment test-environment chromium compiler FORCE
+.PHONY: help run test tests-in-a-browser-and-batches other-tests tests-in-real-time lint lock bench clean environment test-environment chromium compiler FORCE
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-6s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -21,24 +21,30 @@ ADDRESS := $(if $(filter command,$(firstword $(origin HOST))),--host $(HOST)) \
 run: environment ## start the dashboard
 	@exec $(BIN)/vssea serve $(strip $(ADDRESS))
 
-# Beside each other: the browser leaves the processor idle while it waits, and the other tests do not. What failed there is
+# Beside each other: the browser leaves the processor idle while it waits, and the other tests do not; batches follow the browser,
+# so that both halves take about as long. What failed there is
 # run again, alone: only then does it say something of the program, and not of a machine with too much to do.
 test: test-environment chromium compiler ## run the tests
-	@$(MAKE) --no-print-directory --jobs 2 --output-sync=target tests-in-a-browser other-tests
-	@! grep -qs true $(call failed,browser) || $(call tests,browser,"browser and not real_time",$(AGAIN),[ $$? = 5 ])
-	@! grep -qs true $(call failed,other) || $(call tests,other,"not browser and not real_time",$(AGAIN),[ $$? = 5 ])
+	@$(MAKE) --no-print-directory --jobs 2 --output-sync=target tests-in-a-browser-and-batches other-tests
+	@$(call again,browser,$(BROWSER))
+	@$(call again,batches,$(BATCHES))
+	@$(call again,other,$(OTHER))
 	@$(MAKE) --no-print-directory tests-in-real-time
 
-failed = .pytest_cache/$(1)/v/cache/lastfailed
-AGAIN := --last-failed --last-failed-no-failures none
+BROWSER := "browser and not real_time"
+BATCHES := "batches and not browser and not real_time"
+OTHER := "not batches and not browser and not real_time"
+again = ! grep -qs true .pytest_cache/$(1)/v/cache/lastfailed || \
+        $(call tests,$(1),$(2),--last-failed --last-failed-no-failures none,[ $$? = 5 ])
 # $(4) says which ends are no failures. 1: tests failed; 5: there was none to run, since ARGS chose none of these.
 tests = $(BIN)/python -m pytest -o cache_dir=.pytest_cache/$(1) -m $(2) $(3) $(ARGS) || $(4)
 
-tests-in-a-browser:
-	@$(call tests,browser,"browser and not real_time",,[ $$? = 1 -o $$? = 5 ])
+tests-in-a-browser-and-batches:
+	@$(call tests,browser,$(BROWSER),,[ $$? = 1 -o $$? = 5 ])
+	@$(call tests,batches,$(BATCHES),,[ $$? = 1 -o $$? = 5 ])
 
 other-tests:
-	@$(call tests,other,"not browser and not real_time",,[ $$? = 1 -o $$? = 5 ])
+	@$(call tests,other,$(OTHER),,[ $$? = 1 -o $$? = 5 ])
 
 # Alone on the machine: watchdogs stop a rig whose computer is too busy for it, as they should.
 tests-in-real-time:

@@ -9,6 +9,14 @@ settings.register_profile("any machine", deadline=None)
 settings.load_profile("any machine")
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark what computes batches: `make test` has it follow the browser's tests, so that both halves take about as long."""
+    for item in items:
+        if item.path.parent.name == "backend" and item.path.name.startswith(("test_batch", "test_client", "test_dask")):
+            item.add_marker("batches")
+
+
 @pytest.fixture(scope="session")
 def anyio_backend() -> str:
     """The backend runs on asyncio (uvicorn), so do its tests."""
