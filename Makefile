@@ -31,7 +31,9 @@ test: test-environment chromium compiler ## run the tests
 	@$(call again,other,$(OTHER))
 	@$(MAKE) --no-print-directory tests-in-real-time
 
-BROWSER := "browser and not real_time"
+# The others need not be read to know that they are none of the browser's.
+BROWSER_ONLY := $(addprefix --ignore=tests/,core reference backend hardware)
+BROWSER := "browser and not real_time" $(BROWSER_ONLY)
 BATCHES := "batches and not browser and not real_time"
 OTHER := "not batches and not browser and not real_time"
 again = ! grep -qs true .pytest_cache/$(1)/v/cache/lastfailed || \
@@ -49,7 +51,7 @@ other-tests:
 # Alone on the machine: watchdogs stop a rig whose computer is too busy for it, as they should.
 tests-in-real-time:
 	@$(call tests,real_time,"real_time and not browser",,[ $$? = 5 ])
-	@$(call tests,real_time_browser,"real_time and browser",,[ $$? = 5 ])
+	@$(call tests,real_time_browser,"real_time and browser" $(BROWSER_ONLY),,[ $$? = 5 ])
 
 lint: test-environment ## check style, types and layers
 	$(BIN)/ruff check .
