@@ -50,4 +50,6 @@ def compute_part(task: PartTask, progress: Progress) -> PartFiles | None:
         return None if part is None else part_files(part)
     finally:
         gc.enable()
-        gc.collect(1)  # what this part has left; a look at all that is kept for the next ones would take longer each time
+        gc.collect(
+            1
+        )  # what this part has left; a look at all that is kept for the next ones would take longer each time
