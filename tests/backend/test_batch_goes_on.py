@@ -14,6 +14,19 @@ from backend.problem import Problem
 from tests.backend.batch_bench import PART_SIZE, RUNS, Bench, FakeEngine, until, with_bench
 
 
+def stopped_before(tmp_path: Path, part: int) -> str:
+    """The name of a batch whose server was stopped when all parts before `part` were kept."""
+    engine, begun = FakeEngine(), list[str]()
+    engine.held = {part}
+
+    async def until_stopped(bench: Bench) -> None:
+        begun.append(await bench.create())
+        await until(lambda: engine.asked[-1:] == [part])
+
+    with_bench(tmp_path, until_stopped, engine)
+    return begun[0]
+
+
 def test_a_cancelled_batch_goes_on_with_the_parts_that_are_missing(tmp_path: Path) -> None:
     engine = FakeEngine()
     engine.held = {4}
@@ -99,15 +112,7 @@ def test_a_stopped_server_goes_on_with_the_parts_that_are_missing(tmp_path: Path
 def test_parts_of_another_version_or_division_are_computed_anew_from_the_first_on(
     tmp_path: Path, division: dict[str, Any] | None
 ) -> None:
-    engine = FakeEngine()
-    engine.held = {3}
-    begun: list[str] = []
-
-    async def until_stopped(bench: Bench) -> None:
-        begun.append(await bench.create())
-        await until(lambda: engine.asked[-1:] == [3])
-
-    with_bench(tmp_path, until_stopped, engine)
+    begun = [stopped_before(tmp_path, 3)]
     told = tmp_path / "batches" / begun[0] / "parts.json"
     told.unlink() if division is None else told.write_text(json.dumps(json.loads(told.read_text()) | division))
 
@@ -123,15 +128,7 @@ def test_parts_of_another_version_or_division_are_computed_anew_from_the_first_o
 def test_a_damaged_part_is_computed_again_and_a_stray_file_is_left_alone(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    engine = FakeEngine()
-    engine.held = {3}
-    begun: list[str] = []
-
-    async def until_stopped(bench: Bench) -> None:
-        begun.append(await bench.create())
-        await until(lambda: engine.asked[-1:] == [3])
-
-    with_bench(tmp_path, until_stopped, engine)
+    begun = [stopped_before(tmp_path, 3)]
     folder = tmp_path / "batches" / begun[0]
     (folder / "part-00001.parquet").write_bytes(b"")
     for stray in ("part-x.parquet", "part-7.parquet", "part-00002 (copy).parquet"):
@@ -148,15 +145,7 @@ def test_a_damaged_part_is_computed_again_and_a_stray_file_is_left_alone(
 
 
 def test_results_that_are_whole_stay_whatever_version_has_computed_them(tmp_path: Path) -> None:
-    engine = FakeEngine()
-    engine.held = {9}
-    begun: list[str] = []
-
-    async def until_stopped(bench: Bench) -> None:
-        begun.append(await bench.create())
-        await until(lambda: engine.asked[-1:] == [9])
-
-    with_bench(tmp_path, until_stopped, engine)
+    begun = [stopped_before(tmp_path, 9)]
     folder = tmp_path / "batches" / begun[0]
     (folder / "part-00009.parquet").write_bytes(b"rows")
     (folder / "parts.json").write_text(json.dumps({"part_size": PART_SIZE, "version": "another"}))
