@@ -14,6 +14,7 @@ from alembic.config import Config
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 
+from backend.presets.comparison import compared
 from backend.presets.contents import PRESET
 from backend.presets.documents import Documents
 from backend.presets.last import read_last
@@ -28,7 +29,7 @@ OLD = {
     "first": Tuning(controller=StateFeedback(natural_frequency=25.0)),
     "second": Tuning(controller=SlidingMode(), observer=PositionObserver(bandwidth=80.0)),
 }
-ODD = '{"controller": {"kind": "forgotten"}, "gain": 3}'
+ODD = '{"controller": {"kind": "forgotten", "natural_frequency": 33.0}, "gain": 3}'
 
 
 def old_database(file: Path) -> None:
@@ -77,6 +78,14 @@ def test_what_no_longer_fits_is_moved_as_it_was_and_named(old: Path) -> None:
     assert found.fit.unknown == ["tuning.gain"]
     assert [error.field for error in found.fit.refused] == ["tuning.controller.kind"]
     database.close()
+
+
+def test_a_kind_that_nobody_knows_is_compared_as_if_its_part_were_not_there(old: Path) -> None:
+    """Its fields belong to no other kind: `natural_frequency` must not reach the controller in force."""
+    documents = Documents(Database(f"sqlite:///{old}"), PRESET)
+    comparison = compared(documents, "odd", None, "live", Tuning())
+    assert [change.path for change in comparison.changes if change.path.startswith("tuning.controller")] == []
+    assert [error.field for error in comparison.unfit] == ["tuning.controller.kind"]
 
 
 def test_a_copy_of_the_old_file_stays_beside_it_and_is_the_old_file(old: Path) -> None:
